@@ -19,23 +19,8 @@ pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, {% if model.noise.is_some() %}NoiseClass, {% endif %}Pattern, Real{% if model.noise.is_some() %}, Vector{% endif %}};
 
-{%- for (v, implementation) in vectors %}
-/// {{ v.doc }} of {{ label }}.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct {{ v.name }}<T> {
-{%- for field in v.fields %}
-    /// {{ field.described() }}
-    pub {{ field.name }}: T,
-{%- endfor %}
-}
-
-{{ implementation }}
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!({{ v.name }});
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, {{ v.name }});
-
+{%- for (v, definition) in vectors %}
+{{ definition }}
 {%- if let Some(bounds) = v.bounds %}
 /// Where the curve fits are meant to be used.
 pub const {{ bounds }}: {{ v.name }}<Bounds> = {{ v.name }} {
@@ -45,6 +30,10 @@ pub const {{ bounds }}: {{ v.name }}<Bounds> = {{ v.name }} {
 };
 {%- endif %}
 {%- endfor %}
+
+
+#[cfg(feature = "nalgebra")]
+ahv_core::impl_nalgebra!(State by State, {% for (v, _) in vectors[1..] %}{{ v.name }}{% if !loop.last %}, {% endif %}{% endfor %});
 
 {%- if let [first, second, ..] = vectors[0].0.fields %}
 

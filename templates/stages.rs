@@ -5,16 +5,7 @@ use ahv_core::Real;
 
 {%- for stage in stages %}
 
-/// {{ stage.kind.doc }}.
-#[__record]
-pub struct {{ stage.kind.type_name }}<R> {
-{%- for (name, docs) in stage.fields %}
-{%- for line in docs %}
-    /// {{ line }}
-{%- endfor %}
-    pub {{ name }}: R,
-{%- endfor %}
-}
+{{ stage.record }}
 {%- for part in stage.parts %}
 
 /// Fills a part of [`{{ stage.kind.type_name }}`].
@@ -33,7 +24,7 @@ fn {{ part.name }}<R: Real>({{ part.arguments }}) {
 {% if stage.is_inline %}#[inline(always)]
 {% endif -%}
 pub fn {{ stage.kind.function }}<R: Real>({{ stage.arguments }}) -> {{ stage.kind.type_name }}<R> {
-    let mut {{ stage.kind.argument }} = {{ stage.kind.type_name }}::splat(R::ZERO);
+    let mut {{ stage.kind.argument }} = {{ stage.kind.type_name }}::{{ stage.start }};
 {%- for part in stage.parts %}
     {{ part.call }}
 {%- endfor %}

@@ -31,7 +31,9 @@ fn main() -> io::Result<()> {
 
 /// Adds a start with its tables and Python files; a folder without a table is none.
 fn start(list: &mut String, kind: &str, start: &str, files: &[PathBuf]) -> io::Result<()> {
-    let is = |file: &PathBuf, extension: &str| file.extension().is_some_and(|it| it == extension);
+    let is = |file: &PathBuf, extension: &str| {
+        file.extension().is_some_and(|it| it == extension) && name(file) != "Cargo.toml"
+    };
     if !files.iter().any(|file| is(file, "toml")) {
         return Ok(());
     }

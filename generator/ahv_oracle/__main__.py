@@ -4,7 +4,8 @@
 solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`` its trims, poles and zeros,
 ``python -m ahv_oracle elementary --out F`` values of sine, cosine and exponential, ``transcendental`` those of tangent,
 logarithm, powers and inverses, ``python -m ahv_oracle normals --out F`` keyed normal numbers,
-``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there).
+``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there),
+``python -m ahv_oracle answers --tables ../examples --out F`` what the programs of the examples must answer.
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 
@@ -12,6 +13,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from .answers import answer_lines
 from .elementary import elementary_lines
 from .evaluate import Oracle
 from .flights import flight_lines
@@ -35,6 +37,7 @@ ALONE = {
 OF_TABLES = {
     "roots": (root_lines, "trims, poles and zeros"),
     "zeros": (zero_lines, "invariant zeros"),
+    "answers": (answer_lines, "answers of the examples' programs"),
 }
 """What takes all tables: its lines, and what they are."""
 
@@ -58,7 +61,7 @@ def main(arguments: list[str] | None = None) -> int:
         alone.add_argument("--out", type=Path, required=True, help="file to write")
     for name, (_, what) in OF_TABLES.items():
         of_tables = commands.add_parser(name, help=f"write reference {what}")
-        of_tables.add_argument("--tables", type=Path, required=True, help="folder of the coefficient tables")
+        of_tables.add_argument("--tables", type=Path, required=True, help="folder of the tables, or of the examples")
         of_tables.add_argument("--out", type=Path, required=True, help="file to write")
     options = parser.parse_args(arguments)
     if options.command in ALONE:

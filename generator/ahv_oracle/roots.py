@@ -58,6 +58,16 @@ class Case:
         self._by_input = self._compiled([[slope(row, of) for of in inputs] for row in rows])
         self.state, self.input = self._trim()
 
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return self._model.states
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return self._model.inputs
+
     def system(self) -> tuple[Matrix, Matrix]:
         """A and B of the linear system."""
         return self._by_state(self.state, self.input), self._by_input(self.state, self.input)

@@ -67,7 +67,7 @@ pub(crate) fn run() -> Result<(), String> {
         pairs.push(fly(model, &ahv, &scratch.join(TABLE), &change, &demo)?);
     }
     let picture = demo.join("flights.svg");
-    plot::draw(&pairs, &change, &picture)?;
+    plot::draw(&pairs, &change.names(), &picture)?;
 
     heading("Where everything lies");
     for model in MODELS {
@@ -117,9 +117,9 @@ fn generation(root: &Path) -> Result<(Args, Surroundings), String> {
 }
 
 /// The coefficient's value as the table has it, and the one that the demo gives it.
-pub(crate) struct Change {
-    pub(crate) nominal: String,
-    pub(crate) changed: String,
+struct Change {
+    nominal: String,
+    changed: String,
     /// Where the value stands in the table's text.
     at: Range<usize>,
 }
@@ -141,6 +141,11 @@ impl Change {
             changed: format!("{changed:?}"),
             at,
         })
+    }
+
+    /// What to call the flights with the nominal value and with the changed one.
+    fn names(&self) -> [String; 2] {
+        [&self.nominal, &self.changed].map(|value| format!("C_L alpha = {value} / rad"))
     }
 }
 

@@ -7,16 +7,19 @@ mod book;
 mod c;
 mod demo;
 mod determinism;
+mod examples;
 mod firmware;
 mod instructions;
 mod names;
 mod no_panic;
 mod own_vehicle;
+mod packages;
 mod plot;
 mod python;
 mod shell;
 mod steps;
 mod trajectory;
+mod tutorial;
 mod vectors;
 
 use std::process::ExitCode;
@@ -56,6 +59,10 @@ enum Task {
     },
     /// Generate models of other tables than this repository's, and run an `ahv` of their own over each
     OwnVehicle,
+    /// Package the library crates as for a registry, and build each from its package
+    Package,
+    /// Run the commands of docs/tutorial.md, and compare what they print with what stands there
+    Tutorial,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// List the values of the generated code whose names only say whose part they are, each with the reason
@@ -86,13 +93,15 @@ enum Task {
 
 fn main() -> ExitCode {
     let done = match Task::parse() {
-        Task::Generate(args) => return ahv_generate::run(&args).into(),
+        Task::Generate(args) => return examples::generate(&args).into(),
         Task::Setup => python::set_up(),
         Task::Test { all } => steps::run(all),
         Task::Audit { points, seeds } => audit::run(points, seeds),
         Task::Determinism => determinism::run(),
         Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
+        Task::Package => packages::run(true),
+        Task::Tutorial => tutorial::run(),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),
         Task::Bench { peers } => bench::run(peers),

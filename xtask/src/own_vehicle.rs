@@ -1,13 +1,15 @@
 //! The proof that the general crates know no model: packages of a stranger's tables, each with an `ahv` of its own, built
 //! outside the workspace and run.
 
+mod answers;
 mod commands;
 mod tables;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ahv_generate::{Args, Surroundings};
+use answers::Answers;
 use clap::Parser as _;
 use commands::Own;
 
@@ -16,13 +18,19 @@ use crate::shell;
 const PLACE: &str = "tests/own-vehicle";
 /// Where the packages find `ahv-core`.
 const CORE: &str = "../../../../crates/ahv-core";
-/// Families in a file of their own; `tank` is the smallest model that there may be.
-const OWN_FAMILIES: [&str; 2] = ["pendulum", "tank"];
-/// Where they lie, each with its table in a folder of its name.
-const FAMILIES: &str = "generator/tests";
-/// The example that `ahv new` starts from; the program has its name.
-const NEW: &str = "winged-cone";
-/// The same in turbulence: the example's README joins a gust, and the program has this name.
+/// Packages, and the folders with their tables and families; `tank` is the smallest model that there may be.
+const PACKAGES: [(&str, &str); 5] = [
+    ("own-models", "examples/two-mode"),
+    ("four-mode-models", "examples/four-mode"),
+    ("parker-canard-models", "examples/parker-canard"),
+    ("pendulum-models", "generator/tests/pendulum"),
+    ("tank-models", "generator/tests/tank"),
+];
+/// The example of which `ahv new` makes a repository; the program has its name.
+const NEW: &str = "wang-stengel";
+/// The example whose package is checked in.
+const CHECKED_IN: &str = "winged-cone";
+/// It in turbulence: its example's README joins a gust, and the program has this name.
 const GUSTY: &str = "gusty-cone";
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
@@ -31,34 +39,29 @@ const RUN: &str = "cargo run --release -- ";
 /// Makes the packages, builds their programs and runs them.
 pub(crate) fn run() -> Result<(), String> {
     let place = shell::root().join(PLACE);
-    for (package, table, made_by) in [
-        ("own-models", "dcom", tables::two_modes as fn(&str) -> _),
-        ("dcom-alone", "dcom", tables::dcom_alone),
-        ("com-rigid-alone", "com", tables::com_rigid_alone),
-    ] {
-        let table = shell::root().join(format!("generator/tables/{table}.toml"));
-        let text = made_by(&read(&table)?)?;
-        let folder = place.join(format!("made/tables-of-{package}"));
-        write(&folder.join("own.toml"), &text)?;
-        generate(&place, package)?;
+    for (package, folder) in PACKAGES {
+        copied(&place, package, &shell::root().join(folder))?;
     }
-    for family in OWN_FAMILIES {
-        own_family(&place, family)?;
-    }
+    let com = read(&shell::root().join("generator/tables/com.toml"))?;
+    let com = tables::com_rigid_alone(&com)?;
+    write(&tables_of(&place, "com-rigid-alone").join("own.toml"), &com)?;
+    generate(&place, "com-rigid-alone")?;
     gusty(&place)?;
     // The tank's table leaves them out.
     if place.join("made/tank-models/src/tank/hessian.rs").exists() {
         return Err("error: second derivatives of the tank were emitted".to_owned());
     }
     build(&place)?;
+    let answers = Answers::load()?;
     for (program, models, questions) in [
         (
             "own-vehicle",
             ["dcom", "sdcom"].as_slice(),
             commands::TWO_MODES,
         ),
-        ("dcom-alone", &["dcom"], commands::DCOM_ALONE),
         ("com-rigid-alone", &["com_rigid"], commands::COM_RIGID_ALONE),
+        ("four-mode", &["dcom"], commands::FOUR_MODE),
+        ("parker-canard", &["parker_canard"], commands::PARKER_CANARD),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
         (GUSTY, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
@@ -68,17 +71,22 @@ pub(crate) fn run() -> Result<(), String> {
         own.knows(models)?;
         own.answers(questions)?;
     }
+    for program in ["own-vehicle", "four-mode", "parker-canard"] {
+        println!("{program}");
+        answers.compare(program, &Own::new(program, &place.join("made")))?;
+    }
     let line = "rare --model pendulum --t-end 1 --passes angle=1deg";
     let message = "pendulum has no noise, by which copies part";
     Own::new("pendulum", &place.join("made")).refuses(line, message)?;
     let message = "--state-deviation: tank names no deviation that costs 1";
     Own::new("tank", &place.join("made")).refuses("lqr --model tank", message)?;
-    new_repository(&place)?;
+    new_repository(&place, &answers)?;
+    checked_in(&answers)?;
     documented(&place)
 }
 
 /// `ahv new` makes a repository that builds, passes its test and answers as published.
-fn new_repository(place: &Path) -> Result<(), String> {
+fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
     let folder = place.join("made").join(NEW);
     if folder.exists() {
         fs::remove_dir_all(&folder).map_err(problem("remove", &folder))?;
@@ -88,35 +96,50 @@ fn new_repository(place: &Path) -> Result<(), String> {
     make.args(["run", "--quiet", "--package", "ahv-new", "--example", "new"]);
     make.args(["--", &format!("{PLACE}/made/{NEW}")]);
     shell::output(make.args(["--example", NEW, "--ahv", "."]))?;
-    let mut test = shell::cargo();
-    test.args(["test", "--quiet", "--target-dir"]);
-    test.arg(shell::target()).current_dir(&folder);
-    let said = shell::messages(&mut test)?;
-    if said.contains("warning:") {
-        return Err(format!("error: {NEW} compiles with warnings\n{said}"));
-    }
+    built(&folder, &["test", "--quiet"])?;
     let own = Own::new(NEW, &folder);
-    own.answers(commands::WINGED_CONE)?;
+    own.answers(commands::WANG_STENGEL)?;
+    answers.compare(NEW, &own)?;
     own.does("generate --check --from-ir")?;
     own.does("generate --check")
 }
 
-/// Makes the package of a family in a file beside its table.
-fn own_family(place: &Path, family: &str) -> Result<(), String> {
-    let package = format!("{family}-models");
-    for file in [format!("{family}.toml"), format!("{family}.py")] {
-        let text = read(&shell::root().join(FAMILIES).join(family).join(&file))?;
-        let folder = place.join(format!("made/tables-of-{package}"));
-        write(&folder.join(file), &text)?;
+/// The example that is checked in with its package builds as it is, and answers as published.
+fn checked_in(answers: &Answers) -> Result<(), String> {
+    let folder = shell::root().join("examples").join(CHECKED_IN);
+    println!("examples/{CHECKED_IN}");
+    built(&folder, &["build", "--quiet", "--locked"])?;
+    let own = Own::new(CHECKED_IN, &shell::target().join("debug"));
+    own.answers(commands::WINGED_CONE)?;
+    answers.compare(CHECKED_IN, &own)
+}
+
+/// Makes the package of the tables and families in a folder.
+fn copied(place: &Path, package: &str, folder: &Path) -> Result<(), String> {
+    let entries = fs::read_dir(folder).map_err(problem("read", folder))?;
+    for entry in entries {
+        let path = entry.map_err(problem("read", folder))?.path();
+        if let (Some("toml" | "py"), Some(name)) = (extension(&path), path.file_name()) {
+            write(&tables_of(place, package).join(name), &read(&path)?)?;
+        }
     }
-    generate(place, &package)
+    generate(place, package)
+}
+
+fn extension(path: &Path) -> Option<&str> {
+    path.extension()?.to_str()
+}
+
+/// Where the tables of a package are.
+fn tables_of(place: &Path, package: &str) -> PathBuf {
+    place.join(format!("made/tables-of-{package}"))
 }
 
 /// Makes the package of the example with the gust that its README joins.
 fn gusty(place: &Path) -> Result<(), String> {
-    let example = shell::root().join("examples").join(NEW);
+    let example = shell::root().join("examples").join(CHECKED_IN);
     let package = format!("{GUSTY}-models");
-    let folder = place.join(format!("made/tables-of-{package}"));
+    let folder = tables_of(place, &package);
     let table = tables::joined(
         &read(&example.join("winged_cone.toml"))?,
         &read(&example.join("README.md"))?,
@@ -170,13 +193,19 @@ fn generate(place: &Path, package: &str) -> Result<(), String> {
 fn build(place: &Path) -> Result<(), String> {
     let lock = place.join("Cargo.lock");
     fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
-    let mut cargo = shell::cargo();
-    cargo.args(["build", "--quiet", "--target-dir"]);
-    cargo.arg(shell::target()).current_dir(place);
     println!("building {PLACE}");
+    built(place, &["build", "--quiet"])
+}
+
+/// Runs cargo in a workspace of its own; what it compiles must give no warning.
+fn built(workspace: &Path, arguments: &[&str]) -> Result<(), String> {
+    let mut cargo = shell::cargo();
+    cargo.args(arguments).arg("--target-dir");
+    cargo.arg(shell::target()).current_dir(workspace);
     let said = shell::messages(&mut cargo)?;
     if said.contains("warning:") {
-        return Err(format!("error: {PLACE} compiles with warnings\n{said}"));
+        let shown = workspace.display();
+        return Err(format!("error: {shown} compiles with warnings\n{said}"));
     }
     Ok(())
 }

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel};
 
-use crate::demo::Change;
 use crate::trajectory::Trajectory;
 
 /// One model with the table's value of the coefficient and with another.
@@ -24,18 +23,18 @@ const ROWS: [(&[&str], &str); 5] = [
     (&["eta_1", "chi_1"], "flexible coordinate"),
 ];
 
-/// Draws one column a model and one row a state.
-pub(crate) fn draw(pairs: &[Pair], change: &Change, path: &Path) -> Result<(), String> {
+/// Draws one column a model and one row a state; `names` are those of the nominal flights and of the changed ones.
+pub(crate) fn draw(pairs: &[Pair], names: &[String; 2], path: &Path) -> Result<(), String> {
     let panels = ROWS
         .iter()
-        .flat_map(|(states, title)| pairs.iter().map(|pair| panel(states, title, pair, change)));
+        .flat_map(|(states, title)| pairs.iter().map(|pair| panel(states, title, pair, names)));
     let figure = Figure::new("", pairs.len(), panels.collect::<Result<_, _>>()?);
     let problem = |why: String| format!("error: cannot draw {}: {why}", path.display());
     let svg = figure.svg().map_err(|error| problem(error.to_string()))?;
     fs::write(path, svg).map_err(|error| problem(error.to_string()))
 }
 
-fn panel(states: &[&str], title: &str, pair: &Pair, change: &Change) -> Result<Panel, String> {
+fn panel(states: &[&str], title: &str, pair: &Pair, names: &[String; 2]) -> Result<Panel, String> {
     let mut states = states.iter();
     let state = states
         .find(|state| pair.nominal.series(state).is_some())
@@ -45,15 +44,15 @@ fn panel(states: &[&str], title: &str, pair: &Pair, change: &Change) -> Result<P
         in_degrees(unit, points)
     };
     let ((unit, nominal), (_, changed)) = (series(&pair.nominal), series(&pair.changed));
-    let name = |value: &str| format!("C_L alpha = {value} / rad");
+    let [nominal_name, changed_name] = names;
     Ok(Panel {
         title: format!("{}: {title}", pair.model),
         x: Axis::linear("time [s]"),
         y: Axis::linear(format!("{state} [{unit}]")),
         layers: vec![
-            Layer::new(name(&change.nominal), Colour::Blue, Mark::Line(nominal)),
+            Layer::new(nominal_name.as_str(), Colour::Blue, Mark::Line(nominal)),
             Layer::new(
-                name(&change.changed),
+                changed_name.as_str(),
                 Colour::Vermillion,
                 Mark::Line(changed),
             )

@@ -4,7 +4,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::{
-    audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, python, shell,
+    audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, packages, python,
+    shell, tutorial,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -37,7 +38,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 23] = [
+const STEPS: [Step; 25] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--check"], &XTASK[..2], &[])
@@ -90,6 +91,10 @@ const STEPS: [Step; 23] = [
     ("own vehicle", || {
         own_vehicle::run().map(|()| Outcome::Passed)
     }),
+    ("packages", || {
+        packages::run(false).map(|()| Outcome::Passed)
+    }),
+    ("tutorial", || tutorial::run().map(|()| Outcome::Passed)),
     ("no panic path", || {
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
     }),
@@ -97,7 +102,7 @@ const STEPS: [Step; 23] = [
     ("instructions", counted_calls),
 ];
 /// What takes too long for every change, after all else.
-const MORE: [Step; 4] = [
+const MORE: [Step; 5] = [
     ("clippy of every feature", || {
         cargo(
             &["clippy", "--workspace", "--all-targets", "--all-features"],
@@ -107,6 +112,9 @@ const MORE: [Step; 4] = [
     }),
     ("commands with every feature", || {
         cargo(&["test", "--package", "ahv", "--all-features"], &[], &[])
+    }),
+    ("packages, built", || {
+        packages::run(true).map(|()| Outcome::Passed)
     }),
     ("c with clang and clang-tidy", || {
         c::run(true).map(|()| Outcome::Passed)

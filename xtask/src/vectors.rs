@@ -29,7 +29,7 @@ fn models() -> Result<Vec<(String, String)>, String> {
 }
 
 /// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati
-/// solutions, poles and zeros, and mpmath's elementary functions and normal numbers. SLICOT's zeros, `zeros.txt`, are made by
+/// solutions, poles and zeros, the answers of the examples' programs, and mpmath's elementary functions and normal numbers. SLICOT's zeros, `zeros.txt`, are made by
 /// hand, since `slycot` is no requirement: `generator/ahv_oracle/zeros.py` says how.
 pub(crate) fn run() -> Result<(), String> {
     let python = python::development()?;
@@ -67,17 +67,16 @@ pub(crate) fn run() -> Result<(), String> {
         shell::run(alone.current_dir(shell::root().join("generator")))?;
         println!("{out}");
     }
-    let mut roots = shell::program(&python);
-    roots.args([
-        "-m",
-        "ahv_oracle",
-        "roots",
-        "--tables",
-        "tables",
-        "--out",
-        "../tests/vectors/roots.txt",
-    ]);
-    shell::run(roots.current_dir(shell::root().join("generator")))?;
-    println!("tests/vectors/roots.txt");
+    for (name, tables, file) in [
+        ("roots", "tables", "roots.txt"),
+        ("answers", "../examples", "answers.json"),
+    ] {
+        let mut of_tables = shell::program(&python);
+        let out = format!("tests/vectors/{file}");
+        of_tables.args(["-m", "ahv_oracle", name, "--tables", tables]);
+        of_tables.args(["--out", &format!("../{out}")]);
+        shell::run(of_tables.current_dir(shell::root().join("generator")))?;
+        println!("{out}");
+    }
     Ok(())
 }

@@ -1,11 +1,17 @@
 //! Conversions to and from nalgebra, expanded in the crate that has nalgebra as a dependency.
 
-/// `From` both ways between `Name<T>`, made by [`impl_vector!`](crate::impl_vector), and `nalgebra::SVector<T, LEN>`.
+/// `From` both ways between vectors, made by [`impl_vector!`](crate::impl_vector), and `nalgebra::SVector<T, LEN>`; and between
+/// matrices that have such a vector a row, for example a Jacobian, and `nalgebra::SMatrix<T, rows, columns>`.
 ///
-/// Names `::nalgebra` as the invoking crate knows it.
+/// `impl_nalgebra!(State by State, Input)` is for `State<T>`, `Input<T>`, `State<State<T>>` and `State<Input<T>>`, which has a row a
+/// state and a column an input. Names `::nalgebra` as the invoking crate knows it.
 #[macro_export]
 macro_rules! impl_nalgebra {
-    ($name:ident) => {
+    ($rows:ident by $($name:ident),+) => {$(
+        $crate::impl_nalgebra! { @vector $name }
+        $crate::impl_nalgebra! { @matrix $rows, $name }
+    )+};
+    (@vector $name:ident) => {
         impl<__T: ::nalgebra::Scalar> From<$name<__T>>
             for ::nalgebra::SVector<__T, { $name::<()>::LEN }>
         {
@@ -24,14 +30,7 @@ macro_rules! impl_nalgebra {
             }
         }
     };
-}
-
-/// `From` both ways between `Row<Column<T>>`, for example a Jacobian, and `nalgebra::SMatrix<T, rows, columns>`.
-///
-/// `impl_nalgebra_matrix!(State, Input)` makes `State<Input<T>>` a matrix with a row a state and a column an input.
-#[macro_export]
-macro_rules! impl_nalgebra_matrix {
-    ($row:ident, $column:ident) => {
+    (@matrix $row:ident, $column:ident) => {
         impl<__T: ::nalgebra::Scalar> From<$row<$column<__T>>>
             for ::nalgebra::SMatrix<__T, { $row::<()>::LEN }, { $column::<()>::LEN }>
         {

@@ -43,6 +43,42 @@ pub trait Vector<T>: Copy {
     }
 }
 
+/// Makes a struct that is a [`Vector`]: for each field its unit, its SI unit and the factor between them, as in
+/// [`impl_vector!`](crate::impl_vector).
+///
+/// ```
+/// ahv_core::vector! {
+///     /// A pair.
+///     pub struct Pair<T> {
+///         /// Length, ft.
+///         left: ["ft", "m", 0.3048],
+///         /// Angle, rad.
+///         right: ["rad", "rad", 1.0],
+///     }
+/// }
+///
+/// assert_eq!(Pair { left: 1.0, right: 2.0 }.to_array(), [1.0, 2.0]);
+/// assert_eq!(Pair::<f64>::UNITS, ["ft", "rad"]);
+/// ```
+#[macro_export]
+macro_rules! vector {
+    (
+        $(#[$about:meta])*
+        pub struct $name:ident<$component:ident> {
+            $($(#[$doc:meta])* $field:ident: [$unit:literal, $si_unit:literal, $si_factor:literal]),+ $(,)?
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[repr(C)]
+        pub struct $name<$component> {
+            $($(#[$doc])* pub $field: $component,)+
+        }
+
+        $crate::impl_vector! { $name { $($field: [$unit, $si_unit, $si_factor]),+ } }
+    };
+}
+
 /// Makes `struct Name<T>` a [`Vector`], with conversions. For each field stand its unit, its SI unit, and the factor
 /// between them.
 ///

@@ -19,8 +19,6 @@ ahv_core::impl_vector! {
         eta: ["1", "1", 1.0],
     }
 }
-ahv_core::impl_nalgebra!(State);
-ahv_core::impl_nalgebra_matrix!(State, State);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Input<T> {
@@ -30,8 +28,7 @@ struct Input<T> {
 ahv_core::impl_vector!(Input {
     phi: ["1", "1", 1.0]
 });
-ahv_core::impl_nalgebra!(Input);
-ahv_core::impl_nalgebra_matrix!(State, Input);
+ahv_core::impl_nalgebra!(State by State, Input);
 
 const X: State<f64> = State {
     velocity: 1.0,
@@ -134,69 +131,60 @@ fn elementary_functions_have_fixed_bits() {
 
 entries! {
     /// Entries of a matrix.
-    pub struct Sparse, SPARSE: State<State> {
-        velocity_by_alpha: velocity.alpha,
-        eta_by_velocity: eta.velocity,
-        eta_by_eta: eta.eta,
+    pub struct Sparse in sparse, SPARSE: State<State> {
+        velocity { alpha }
+        eta { velocity, eta }
     }
 }
 
 entries! {
     /// A matrix without entries.
-    pub struct Nothing, NOTHING: State<State> {
+    pub struct Nothing in nothing, NOTHING: State<State> {
     }
 }
 
 entries! {
     /// Entries of an array of three indices.
-    pub struct Deep, DEEP: State<State<State>> {
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        eta_by_velocity_velocity: eta.velocity.velocity,
+    pub struct Deep in deep, DEEP: State<State<State>> {
+        velocity { alpha { velocity } }
+        eta { velocity { velocity } }
     }
 }
 
 entries! {
     /// Entries that stand for their mirror images too.
-    pub struct Mirrored, MIRRORED: symmetric State<State<State>> {
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        velocity_by_eta_eta: velocity.eta.eta,
+    pub struct Mirrored in mirrored, MIRRORED: symmetric State<State<State>> {
+        velocity { alpha { velocity } eta { eta } }
     }
 }
 
 /// What compressed arrays stand for: the entries at their places, zero elsewhere, and mirror images.
 #[test]
 fn entries_stand_at_their_places() {
-    let entries = Sparse {
-        velocity_by_alpha: 4.0,
-        eta_by_velocity: 5.0,
-        ..Sparse::splat(6.0)
-    };
+    let mut entries = Sparse::splat(6.0);
+    (entries.velocity.alpha, entries.eta.velocity) = (4.0, 5.0);
     assert_eq!(
         (SPARSE.len(), SPARSE.is_empty(), SPARSE.shape),
         (3, false, [3, 3])
     );
     assert_eq!(SPARSE.at, [[0, 1], [2, 0], [2, 2]]);
     assert_eq!(entries.to_array(), [4.0, 5.0, 6.0]);
-    assert_eq!(entries.map_ref(|it| 2.0 * it).eta_by_velocity, 10.0);
+    assert_eq!(entries.map_ref(|it| 2.0 * it).eta.velocity, 10.0);
     let expected = [[0.0, 4.0, 0.0], [0.0; 3], [5.0, 0.0, 6.0]];
     assert_eq!(entries.dense().to_matrix(), expected);
-    assert!(NOTHING.is_empty());
+    assert!(NOTHING.is_empty() && Nothing::splat(1.0).to_array().is_empty());
     assert_eq!(Nothing::splat(1.0).dense().to_matrix(), [[0.0; 3]; 3]);
 
     let of_matrices =
         |array: State<State<State<f64>>>| array.map_into(|matrix| matrix.to_matrix()).to_array();
-    let deep = Deep {
-        velocity_by_alpha_velocity: 7.0,
-        eta_by_velocity_velocity: 9.0,
-    };
+    let mut deep = Deep::splat(7.0);
+    deep.eta.velocity.velocity = 9.0;
     let mut expected = [[[0.0; 3]; 3]; 3];
     (expected[0][1][0], expected[2][0][0]) = (7.0, 9.0);
     assert_eq!(DEEP.at, [[0, 1, 0], [2, 0, 0]]);
     assert_eq!(of_matrices(deep.dense()), expected);
-    let mirrored = Mirrored {
-        velocity_by_alpha_velocity: 7.0,
-        velocity_by_eta_eta: 8.0,
-    };
+    let mut mirrored = Mirrored::splat(7.0);
+    mirrored.velocity.eta.eta = 8.0;
     let mut expected = [[[0.0; 3]; 3]; 3];
     (expected[0][1][0], expected[0][0][1], expected[0][2][2]) = (7.0, 7.0, 8.0);
     assert_eq!(MIRRORED.at, [[0, 1, 0], [0, 2, 2]]);
@@ -214,8 +202,7 @@ mod names {
                     other: $parameter,
                 }
                 ahv_core::impl_vector! { $name { f: ["1", "1", 1.0], other: ["1", "1", 1.0] } }
-                ahv_core::impl_nalgebra!($name);
-                ahv_core::impl_nalgebra_matrix!($name, $name);
+                ahv_core::impl_nalgebra!($name by $name);
 
                 #[test]
                 fn it_is_a_vector() {

@@ -7,7 +7,8 @@ use toml_edit::{Document, Item, TableLike};
 
 use crate::failure::Failure;
 
-const FILE: &str = "Cargo.toml";
+/// The file that has them.
+pub(crate) const FILE: &str = "Cargo.toml";
 /// The section of `Cargo.toml`, below `[workspace.metadata]`.
 const SECTION: &str = "ahv";
 const KEYS: [&str; 6] = [

@@ -11,6 +11,7 @@ use serde::Deserialize;
 use crate::failure::{Failure, TableFault};
 use crate::files;
 use crate::project::Project;
+use crate::settings;
 use crate::structure;
 
 /// A table's file.
@@ -66,11 +67,11 @@ impl Diagnostic {
 }
 
 impl Tables {
-    /// Reads every `*.toml` in the folder of tables, hidden ones excepted.
+    /// Reads every `*.toml` in the folder of tables, but hidden ones and `Cargo.toml`.
     pub(crate) fn load(project: &Project) -> Result<Self, Failure> {
         let [tables, out] = [&project.tables, &project.out].map(|path| path.canonicalize().ok());
         if tables.is_some() && tables == out {
-            // Its Cargo.toml would be read as a table the next time.
+            // What is generated stands apart from what people edit.
             let folder = project.shown(&project.out);
             let message = format!(
                 "{folder} holds the tables: the generated package needs a folder of its own"
@@ -207,9 +208,10 @@ pub(crate) fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
         let path = entry
             .map_err(Failure::file("read", &project.tables))?
             .path();
-        // Editors keep hidden files beside those that are open.
+        // Editors keep hidden files beside those that are open; a program may stand beside its tables.
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if path.extension() == Some(OsStr::new("toml")) && !name.starts_with('.') {
+        let is_toml = path.extension() == Some(OsStr::new("toml"));
+        if is_toml && !name.starts_with('.') && name != settings::FILE {
             paths.push(path);
         }
     }

@@ -5,6 +5,21 @@
 //! a repository starts from, `origin` where its `ahv` comes from, `name` what it may be called, `repository` has the files.
 //!
 //! It is a crate of its own because it embeds the tables: `ahv-generate` must not be built again when a table changes.
+//!
+//! ```
+//! use clap::Parser;
+//!
+//! #[derive(Parser)]
+//! struct Line {
+//!     #[command(flatten)]
+//!     new: ahv_new::Args,
+//! }
+//!
+//! // A folder that holds something is nobody's to overwrite.
+//! let taken = env!("CARGO_MANIFEST_DIR");
+//! let line = Line::parse_from(["new", taken, "--example", "van-der-pol", "--ahv", "."]);
+//! assert_eq!(ahv_new::run(&line.new), 2);
+//! ```
 #![forbid(unsafe_code)]
 
 mod failure;

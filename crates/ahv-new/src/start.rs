@@ -136,6 +136,9 @@ fn parts(document: &toml_edit::DocumentMut) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::path::Path;
+
     use super::{Kind, embedded, named_by};
 
     #[test]
@@ -145,13 +148,32 @@ mod tests {
         assert_eq!(names, ["winged_cone.py", "winged_cone.toml"]);
     }
 
+    /// The folders of `examples/` with a file that is a table.
+    fn with_a_table() -> Vec<String> {
+        let has_table = |folder: &Path| {
+            let files = fs::read_dir(folder).expect("a folder").flatten();
+            files.map(|it| it.path()).any(|it| {
+                it.extension().is_some_and(|it| it == "toml") && !it.ends_with("Cargo.toml")
+            })
+        };
+        let folders = fs::read_dir("../../examples").expect("examples").flatten();
+        let folders = folders.filter(|it| it.path().is_dir() && has_table(&it.path()));
+        let mut names: Vec<String> = folders
+            .map(|it| it.file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
     #[test]
     fn what_there_is_not_is_answered_with_what_there_is() {
         let said = embedded(Kind::Example, "saucer")
             .expect_err("unknown")
             .render();
         assert!(said.contains("`saucer` is not an example"), "{said}");
-        assert!(said.contains("van-der-pol, winged-cone"), "{said}");
+        let offered = format!("there are {}\n", with_a_table().join(", "));
+        assert!(said.contains(&offered), "{said}");
+        assert!(offered.contains("van-der-pol") && offered.contains("winged-cone"));
         let said = embedded(Kind::Family, "saucer")
             .expect_err("unknown")
             .render();

@@ -228,7 +228,10 @@ fn what_is_not_valid_is_refused_before_anything_is_written() {
     here.refuses(&["fn"], &["`fn`", "keyword", "--name"]);
     here.refuses(&["w", "--name", "core"], &["`core`", "a crate of Rust"]);
     here.refuses(&["w", "--name", "ahv-core"], &["a package `ahv-core`"]);
-    here.refuses(&["w", "--example", "saucer"], &["van-der-pol, winged-cone"]);
+    here.refuses(
+        &["w", "--example", "saucer"],
+        &["van-der-pol, wang-stengel, winged-cone"],
+    );
     here.refuses(&["w", "--family", "saucer"], &["com, dcom, flexible_mode"]);
     here.refuses(&["w", "--family", "kite.py"], &["kite.toml", "--table"]);
     here.refuses(&["w", "--rev", "abc"], &["--rev is for the URL"]);

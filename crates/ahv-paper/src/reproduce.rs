@@ -1,9 +1,10 @@
 //! The paper's section 5, computed again.
 //!
 //! Table 1 and Fig. 2 ([`table1`]), Figs. 3 and 4 ([`snapshot`]), Fig. 5 ([`forced`]), Tables 2 and 3 with Fig. 6
-//! ([`vehicle`]); what the paper prints is in [`printed`]. Random results are functions of [`Size`] alone, on any number of
+//! ([`vehicle`]); [`differences`] compares (27)–(35) as printed with the exact form; what the paper prints is in [`printed`]. Random results are functions of [`Size`] alone, on any number of
 //! threads.
 
+pub mod differences;
 pub mod forced;
 pub mod p_value;
 pub mod pairing;

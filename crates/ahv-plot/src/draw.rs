@@ -1,45 +1,23 @@
 //! From a figure to SVG.
 
-use std::error::Error;
-
-use plotters::coord::Shift;
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use crate::canvas::{Area, FONT, Failed, LINE, SUBPIXELS, dashes, draw_marker, px, text_width};
 use crate::clip::inside;
 use crate::extent::Extent;
-use crate::legend::{Legend, text_width};
-use crate::{Axis, Cells, Colour, Figure, Layer, Mark, Panel, PlotError, Scale, Shape};
+use crate::legend::Legend;
+use crate::{Axis, Cells, Figure, Layer, Mark, Panel, PlotError, Scale};
 
-pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub(crate) type Failed = Box<dyn Error>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Extent, Extent>>;
 
-/// The drawing library places on whole pixels; the figure is drawn this much larger and shown smaller.
-pub(crate) const SUBPIXELS: u32 = 8;
-/// Size of small text, in pixels.
-pub(crate) const FONT: u32 = 14;
-/// Width of lines, in pixels.
-pub(crate) const LINE: u32 = 2;
 /// Heights of the titles of figure and panel, in pixels.
 const TITLES: (u32, u32) = (34, 17);
-/// Half a marker, in pixels.
-const MARKER: u32 = 5;
 /// Width of a colour bar with its labels, in pixels.
 const COLOUR_BAR: u32 = 96;
 /// Shades of a colour bar.
 const SHADES: u32 = 64;
-
-/// Pixels as the drawing library counts them.
-pub(crate) fn px(pixels: u32) -> i32 {
-    (pixels * SUBPIXELS).cast_signed()
-}
-
-/// Length of a dash and of the gap after it.
-pub(crate) fn dashes() -> (i32, i32) {
-    (px(7), px(4))
-}
 
 /// The text of the SVG file.
 pub(crate) fn figure(figure: &Figure) -> Result<String, PlotError> {
@@ -275,36 +253,6 @@ fn draw_line(
         } else {
             chart.draw_series(LineSeries::new(part, stroke))?;
         }
-    }
-    Ok(())
-}
-
-/// Draws a marker at a place of `area`.
-pub(crate) fn draw_marker(
-    area: &Area<'_>,
-    shape: Shape,
-    (x, y): (i32, i32),
-    colour: Colour,
-) -> Result<(), Failed> {
-    let (r, style) = (px(MARKER), colour.rgb().stroke_width(LINE * SUBPIXELS));
-    let path = |places: &[(i32, i32)]| {
-        let places: Vec<_> = places
-            .iter()
-            .map(|&(a, b)| (x + a * r, y + b * r))
-            .collect();
-        area.draw(&PathElement::new(places, style))
-    };
-    match shape {
-        Shape::Circle => area.draw(&Circle::new((x, y), r, style))?,
-        Shape::Dot => area.draw(&Circle::new((x, y), r, style.filled()))?,
-        Shape::Point => area.draw(&Circle::new((x, y), r / 3, style.filled()))?,
-        Shape::Cross => area.draw(&Cross::new((x, y), r, style))?,
-        Shape::Plus => {
-            path(&[(-1, 0), (1, 0)])?;
-            path(&[(0, -1), (0, 1)])?;
-        }
-        Shape::Square => path(&[(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])?,
-        Shape::Diamond => path(&[(-1, 0), (0, -1), (1, 0), (0, 1), (-1, 0)])?,
     }
     Ok(())
 }

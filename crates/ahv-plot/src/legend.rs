@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::draw::{Area, FONT, Failed, LINE, SUBPIXELS, dashes, draw_marker, px};
+use crate::canvas::{Area, FONT, Failed, LINE, SUBPIXELS, dashes, draw_marker, px, text_width};
 use crate::{Figure, Layer, Mark};
 
 /// Height of a row, in pixels.
@@ -12,14 +12,6 @@ const ROW: u32 = 24;
 const SAMPLE: u32 = 34;
 /// Room between a sample and its name, and between two entries, in pixels.
 const GAPS: (u32, u32) = (7, 26);
-/// Width of a letter as a share of the size of the font; SVG does not tell.
-const LETTER: f64 = 0.53;
-
-/// Width of small text of so many letters, in pixels.
-pub(crate) fn text_width(letters: usize) -> u32 {
-    (letters as f64 * LETTER * f64::from(FONT)).ceil() as u32
-}
-
 /// Entries with the places of their samples, in pixels.
 pub(crate) struct Legend<'a> {
     entries: Vec<(&'a Layer, u32, u32)>,

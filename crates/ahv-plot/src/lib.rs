@@ -20,6 +20,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod canvas;
 mod clip;
 mod draw;
 mod extent;

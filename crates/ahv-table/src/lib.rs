@@ -10,7 +10,7 @@
 //! use ahv_table::{Family, Text, check};
 //!
 //! let families = [Family::of::<ahv_models::dcom::Model<f64>>()];
-//! let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../generator/tables/dcom.toml");
+//! let path = concat!(env!("CARGO_MANIFEST_DIR"), "/example/dcom.toml");
 //! let own = std::fs::read_to_string(path)?;
 //!
 //! // A table that the models were made of has no fault; its first set is its own.

@@ -193,7 +193,7 @@ mod tests {
     /// What the generator's reader takes and refuses, too.
     #[test]
     fn both_readers_have_one_grammar() {
-        let cases = include_str!("../../../generator/tests/units.txt");
+        let cases = include_str!("../example/units.txt");
         for case in cases.lines().filter(|line| !line.starts_with('#')) {
             let (taken, text) = case.split_at(1);
             let text = text.strip_prefix(' ').unwrap_or(text);

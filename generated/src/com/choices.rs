@@ -37,16 +37,10 @@ impl<R: Real> Parameters<R> {
     pub fn with_earth(self, choice: Earth) -> Self {
         match choice {
             Earth::Flat => {
-                Self {
-                    spherical_earth: R::ZERO,
-                    ..self
-                }
+                Self { spherical_earth: R::ZERO, ..self }
             }
             Earth::Spherical => {
-                Self {
-                    spherical_earth: R::ONE,
-                    ..self
-                }
+                Self { spherical_earth: R::ONE, ..self }
             }
         }
     }

@@ -10,8 +10,7 @@ use ahv_core::Real;
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.density
+    intermediates(x, u, p).density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
@@ -19,8 +18,7 @@ pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.dynamic_pressure
+    intermediates(x, u, p).dynamic_pressure
 }
 
 /// Lift coefficient, eq. (3). Unit: 1.
@@ -28,8 +26,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) ->
 /// 4 operations: 2 additions, 2 multiplications.
 #[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_l
+    intermediates(x, u, p).c_l
 }
 
 /// Drag coefficient, eq. (3). Unit: 1.
@@ -37,8 +34,7 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 10 operations: 4 additions, 6 multiplications.
 #[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_d
+    intermediates(x, u, p).c_d
 }
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
@@ -46,8 +42,7 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 7 operations: 3 additions, 4 multiplications.
 #[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_m
+    intermediates(x, u, p).c_m
 }
 
 /// Thrust, eq. (3). Unit: lb/ft.
@@ -55,8 +50,7 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 16 operations: 7 additions, 9 multiplications.
 #[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.thrust
+    intermediates(x, u, p).thrust
 }
 
 /// Lift, eq. (2). Unit: lb/ft.
@@ -65,8 +59,6 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Forces and moment, (2)
     i.reference_force * i.c_l
 }
 
@@ -75,8 +67,7 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 19 operations: 5 additions, 13 multiplications, 1 exp.
 #[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.drag
+    intermediates(x, u, p).drag
 }
 
 /// Pitching moment, eq. (2). Unit: lb.
@@ -84,8 +75,7 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 34 operations: 12 additions, 21 multiplications, 1 exp.
 #[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.pitching_moment
+    intermediates(x, u, p).pitching_moment
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -93,8 +83,7 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 /// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_1
+    intermediates(x, u, p).generalized_force_1
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -102,6 +91,5 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// 7 operations: 3 additions, 4 multiplications.
 #[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_2
+    intermediates(x, u, p).generalized_force_2
 }

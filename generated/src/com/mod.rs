@@ -35,49 +35,29 @@ pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, Pattern, Real};
 
-/// State of COM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct State<T> {
-    /// Velocity, ft/s.
-    pub velocity: T,
-    /// Altitude, ft.
-    pub altitude: T,
-    /// Flight-path angle, rad.
-    pub gamma: T,
-    /// Angle of attack, rad.
-    pub alpha: T,
-    /// Pitch rate, rad/s.
-    pub pitch_rate: T,
-    /// Flexible generalized coordinate of mode 1, (ft*slug)^0.5.
-    pub eta_1: T,
-    /// Rate of the flexible generalized coordinate of mode 1, (ft*slug)^0.5/s.
-    pub eta_dot_1: T,
-    /// Flexible generalized coordinate of mode 2, (ft*slug)^0.5.
-    pub eta_2: T,
-    /// Rate of the flexible generalized coordinate of mode 2, (ft*slug)^0.5/s.
-    pub eta_dot_2: T,
-}
-
-ahv_core::impl_vector! {
-    State {
+ahv_core::vector! {
+    /// State of COM.
+    pub struct State<T> {
+        /// Velocity, ft/s.
         velocity: ["ft/s", "m/s", 0.3048],
+        /// Altitude, ft.
         altitude: ["ft", "m", 0.3048],
+        /// Flight-path angle, rad.
         gamma: ["rad", "rad", 1.0],
+        /// Angle of attack, rad.
         alpha: ["rad", "rad", 1.0],
+        /// Pitch rate, rad/s.
         pitch_rate: ["rad/s", "rad/s", 1.0],
+        /// Flexible generalized coordinate of mode 1, (ft*slug)^0.5.
         eta_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Rate of the flexible generalized coordinate of mode 1, (ft*slug)^0.5/s.
         eta_dot_1: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
+        /// Flexible generalized coordinate of mode 2, (ft*slug)^0.5.
         eta_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Rate of the flexible generalized coordinate of mode 2, (ft*slug)^0.5/s.
         eta_dot_2: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, State);
 
 /// Where the curve fits are meant to be used.
 pub const STATE_BOUNDS: State<Bounds> = State {
@@ -92,28 +72,15 @@ pub const STATE_BOUNDS: State<Bounds> = State {
     eta_dot_2: VALIDITY.eta_dot,
 };
 
-/// Input of COM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Input<T> {
-    /// Fuel equivalence ratio, dimensionless.
-    pub phi: T,
-    /// Elevator deflection, rad.
-    pub delta_e: T,
-}
-
-ahv_core::impl_vector! {
-    Input {
+ahv_core::vector! {
+    /// Input of COM.
+    pub struct Input<T> {
+        /// Fuel equivalence ratio, dimensionless.
         phi: ["1", "1", 1.0],
+        /// Elevator deflection, rad.
         delta_e: ["rad", "rad", 1.0],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Input);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Input);
 
 /// Where the curve fits are meant to be used.
 pub const INPUT_BOUNDS: Input<Bounds> = Input {
@@ -121,58 +88,38 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
     delta_e: VALIDITY.delta_e,
 };
 
-/// Quantities that people look at of COM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Outputs<T> {
-    /// Pitch angle, rad.
-    pub theta: T,
-    /// Air density, slug/ft^3.
-    pub density: T,
-    /// Dynamic pressure, lb/ft^2.
-    pub dynamic_pressure: T,
-    /// Lift coefficient, dimensionless.
-    pub c_l: T,
-    /// Drag coefficient, dimensionless.
-    pub c_d: T,
-    /// Pitching-moment coefficient, dimensionless.
-    pub c_m: T,
-    /// Thrust, lb/ft.
-    pub thrust: T,
-    /// Lift, lb/ft.
-    pub lift: T,
-    /// Drag, lb/ft.
-    pub drag: T,
-    /// Pitching moment, lb.
-    pub pitching_moment: T,
-    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-    pub generalized_force_1: T,
-    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-    pub generalized_force_2: T,
-}
-
-ahv_core::impl_vector! {
-    Outputs {
+ahv_core::vector! {
+    /// Quantities that people look at of COM.
+    pub struct Outputs<T> {
+        /// Pitch angle, rad.
         theta: ["rad", "rad", 1.0],
+        /// Air density, slug/ft^3.
         density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        /// Dynamic pressure, lb/ft^2.
         dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        /// Lift coefficient, dimensionless.
         c_l: ["1", "1", 1.0],
+        /// Drag coefficient, dimensionless.
         c_d: ["1", "1", 1.0],
+        /// Pitching-moment coefficient, dimensionless.
         c_m: ["1", "1", 1.0],
+        /// Thrust, lb/ft.
         thrust: ["lb/ft", "N/m", 14.593902937206364],
+        /// Lift, lb/ft.
         lift: ["lb/ft", "N/m", 14.593902937206364],
+        /// Drag, lb/ft.
         drag: ["lb/ft", "N/m", 14.593902937206364],
+        /// Pitching moment, lb.
         pitching_moment: ["lb", "N", 4.4482216152605],
+        /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
         generalized_force_1: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
         generalized_force_2: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
     }
 }
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Outputs);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Outputs);
+ahv_core::impl_nalgebra!(State by State, Input, Outputs);
 
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
@@ -196,9 +143,7 @@ pub struct Model<R> {
 impl<R: Real> Model<R> {
     /// The model for these parameters.
     pub fn new(parameters: &Parameters<R>) -> Self {
-        Self {
-            prepared: prepare(parameters),
-        }
+        Self { prepared: prepare(parameters) }
     }
 }
 
@@ -229,20 +174,12 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline(always)]
-    fn jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (StateJacobian<R>, InputJacobian<R>) {
+    fn jacobians(&self, x: &State<R>, u: &Input<R>) -> (StateJacobian<R>, InputJacobian<R>) {
         jacobians(x, u, &self.prepared)
     }
 
     #[inline(always)]
-    fn drift_and_jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    fn drift_and_jacobians(&self, x: &State<R>, u: &Input<R>) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }

@@ -3,284 +3,124 @@
 //! Functions of COM. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
-    State, intermediates, sensitivities, slopes,
+    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes, State, intermediates,
+    sensitivities, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity_by_m: velocity.m,
-        velocity_by_s: velocity.s,
-        velocity_by_rho_0: velocity.rho_0,
-        velocity_by_h_0: velocity.h_0,
-        velocity_by_h_s: velocity.h_s,
-        velocity_by_g: velocity.g,
-        velocity_by_r_e: velocity.r_e,
-        velocity_by_spherical_earth: velocity.spherical_earth,
-        velocity_by_t_phi_alpha_3: velocity.t_phi_alpha_3,
-        velocity_by_t_phi_alpha_2: velocity.t_phi_alpha_2,
-        velocity_by_t_phi_alpha: velocity.t_phi_alpha,
-        velocity_by_t_phi: velocity.t_phi,
-        velocity_by_t_alpha_3: velocity.t_alpha_3,
-        velocity_by_t_alpha_2: velocity.t_alpha_2,
-        velocity_by_t_alpha: velocity.t_alpha,
-        velocity_by_t_0: velocity.t_0,
-        velocity_by_c_d_alpha_2: velocity.c_d_alpha_2,
-        velocity_by_c_d_alpha: velocity.c_d_alpha,
-        velocity_by_c_d_delta_e_2: velocity.c_d_delta_e_2,
-        velocity_by_c_d_delta_e: velocity.c_d_delta_e,
-        velocity_by_c_d_0: velocity.c_d_0,
-        gamma_by_m: gamma.m,
-        gamma_by_s: gamma.s,
-        gamma_by_rho_0: gamma.rho_0,
-        gamma_by_h_0: gamma.h_0,
-        gamma_by_h_s: gamma.h_s,
-        gamma_by_g: gamma.g,
-        gamma_by_r_e: gamma.r_e,
-        gamma_by_spherical_earth: gamma.spherical_earth,
-        gamma_by_t_phi_alpha_3: gamma.t_phi_alpha_3,
-        gamma_by_t_phi_alpha_2: gamma.t_phi_alpha_2,
-        gamma_by_t_phi_alpha: gamma.t_phi_alpha,
-        gamma_by_t_phi: gamma.t_phi,
-        gamma_by_t_alpha_3: gamma.t_alpha_3,
-        gamma_by_t_alpha_2: gamma.t_alpha_2,
-        gamma_by_t_alpha: gamma.t_alpha,
-        gamma_by_t_0: gamma.t_0,
-        gamma_by_c_l_alpha: gamma.c_l_alpha,
-        gamma_by_c_l_delta_e: gamma.c_l_delta_e,
-        gamma_by_c_l_0: gamma.c_l_0,
-        alpha_by_m: alpha.m,
-        alpha_by_s: alpha.s,
-        alpha_by_rho_0: alpha.rho_0,
-        alpha_by_h_0: alpha.h_0,
-        alpha_by_h_s: alpha.h_s,
-        alpha_by_g: alpha.g,
-        alpha_by_r_e: alpha.r_e,
-        alpha_by_spherical_earth: alpha.spherical_earth,
-        alpha_by_t_phi_alpha_3: alpha.t_phi_alpha_3,
-        alpha_by_t_phi_alpha_2: alpha.t_phi_alpha_2,
-        alpha_by_t_phi_alpha: alpha.t_phi_alpha,
-        alpha_by_t_phi: alpha.t_phi,
-        alpha_by_t_alpha_3: alpha.t_alpha_3,
-        alpha_by_t_alpha_2: alpha.t_alpha_2,
-        alpha_by_t_alpha: alpha.t_alpha,
-        alpha_by_t_0: alpha.t_0,
-        alpha_by_c_l_alpha: alpha.c_l_alpha,
-        alpha_by_c_l_delta_e: alpha.c_l_delta_e,
-        alpha_by_c_l_0: alpha.c_l_0,
-        pitch_rate_by_i_yy: pitch_rate.i_yy,
-        pitch_rate_by_s: pitch_rate.s,
-        pitch_rate_by_c_bar: pitch_rate.c_bar,
-        pitch_rate_by_z_t: pitch_rate.z_t,
-        pitch_rate_by_rho_0: pitch_rate.rho_0,
-        pitch_rate_by_h_0: pitch_rate.h_0,
-        pitch_rate_by_h_s: pitch_rate.h_s,
-        pitch_rate_by_omega_1: pitch_rate.omega_1,
-        pitch_rate_by_omega_2: pitch_rate.omega_2,
-        pitch_rate_by_zeta_1: pitch_rate.zeta_1,
-        pitch_rate_by_zeta_2: pitch_rate.zeta_2,
-        pitch_rate_by_psi_1: pitch_rate.psi_1,
-        pitch_rate_by_psi_2: pitch_rate.psi_2,
-        pitch_rate_by_t_phi_alpha_3: pitch_rate.t_phi_alpha_3,
-        pitch_rate_by_t_phi_alpha_2: pitch_rate.t_phi_alpha_2,
-        pitch_rate_by_t_phi_alpha: pitch_rate.t_phi_alpha,
-        pitch_rate_by_t_phi: pitch_rate.t_phi,
-        pitch_rate_by_t_alpha_3: pitch_rate.t_alpha_3,
-        pitch_rate_by_t_alpha_2: pitch_rate.t_alpha_2,
-        pitch_rate_by_t_alpha: pitch_rate.t_alpha,
-        pitch_rate_by_t_0: pitch_rate.t_0,
-        pitch_rate_by_c_m_alpha_2: pitch_rate.c_m_alpha_2,
-        pitch_rate_by_c_m_alpha: pitch_rate.c_m_alpha,
-        pitch_rate_by_c_m_delta_e: pitch_rate.c_m_delta_e,
-        pitch_rate_by_c_m_0: pitch_rate.c_m_0,
-        pitch_rate_by_n_1_alpha_2: pitch_rate.n_1_alpha_2,
-        pitch_rate_by_n_1_alpha: pitch_rate.n_1_alpha,
-        pitch_rate_by_n_1_0: pitch_rate.n_1_0,
-        pitch_rate_by_n_2_alpha_2: pitch_rate.n_2_alpha_2,
-        pitch_rate_by_n_2_alpha: pitch_rate.n_2_alpha,
-        pitch_rate_by_n_2_delta_e: pitch_rate.n_2_delta_e,
-        pitch_rate_by_n_2_0: pitch_rate.n_2_0,
-        eta_dot_1_by_i_yy: eta_dot_1.i_yy,
-        eta_dot_1_by_s: eta_dot_1.s,
-        eta_dot_1_by_c_bar: eta_dot_1.c_bar,
-        eta_dot_1_by_z_t: eta_dot_1.z_t,
-        eta_dot_1_by_rho_0: eta_dot_1.rho_0,
-        eta_dot_1_by_h_0: eta_dot_1.h_0,
-        eta_dot_1_by_h_s: eta_dot_1.h_s,
-        eta_dot_1_by_omega_1: eta_dot_1.omega_1,
-        eta_dot_1_by_omega_2: eta_dot_1.omega_2,
-        eta_dot_1_by_zeta_1: eta_dot_1.zeta_1,
-        eta_dot_1_by_zeta_2: eta_dot_1.zeta_2,
-        eta_dot_1_by_psi_1: eta_dot_1.psi_1,
-        eta_dot_1_by_psi_2: eta_dot_1.psi_2,
-        eta_dot_1_by_t_phi_alpha_3: eta_dot_1.t_phi_alpha_3,
-        eta_dot_1_by_t_phi_alpha_2: eta_dot_1.t_phi_alpha_2,
-        eta_dot_1_by_t_phi_alpha: eta_dot_1.t_phi_alpha,
-        eta_dot_1_by_t_phi: eta_dot_1.t_phi,
-        eta_dot_1_by_t_alpha_3: eta_dot_1.t_alpha_3,
-        eta_dot_1_by_t_alpha_2: eta_dot_1.t_alpha_2,
-        eta_dot_1_by_t_alpha: eta_dot_1.t_alpha,
-        eta_dot_1_by_t_0: eta_dot_1.t_0,
-        eta_dot_1_by_c_m_alpha_2: eta_dot_1.c_m_alpha_2,
-        eta_dot_1_by_c_m_alpha: eta_dot_1.c_m_alpha,
-        eta_dot_1_by_c_m_delta_e: eta_dot_1.c_m_delta_e,
-        eta_dot_1_by_c_m_0: eta_dot_1.c_m_0,
-        eta_dot_1_by_n_1_alpha_2: eta_dot_1.n_1_alpha_2,
-        eta_dot_1_by_n_1_alpha: eta_dot_1.n_1_alpha,
-        eta_dot_1_by_n_1_0: eta_dot_1.n_1_0,
-        eta_dot_1_by_n_2_alpha_2: eta_dot_1.n_2_alpha_2,
-        eta_dot_1_by_n_2_alpha: eta_dot_1.n_2_alpha,
-        eta_dot_1_by_n_2_delta_e: eta_dot_1.n_2_delta_e,
-        eta_dot_1_by_n_2_0: eta_dot_1.n_2_0,
-        eta_dot_2_by_i_yy: eta_dot_2.i_yy,
-        eta_dot_2_by_s: eta_dot_2.s,
-        eta_dot_2_by_c_bar: eta_dot_2.c_bar,
-        eta_dot_2_by_z_t: eta_dot_2.z_t,
-        eta_dot_2_by_rho_0: eta_dot_2.rho_0,
-        eta_dot_2_by_h_0: eta_dot_2.h_0,
-        eta_dot_2_by_h_s: eta_dot_2.h_s,
-        eta_dot_2_by_omega_1: eta_dot_2.omega_1,
-        eta_dot_2_by_omega_2: eta_dot_2.omega_2,
-        eta_dot_2_by_zeta_1: eta_dot_2.zeta_1,
-        eta_dot_2_by_zeta_2: eta_dot_2.zeta_2,
-        eta_dot_2_by_psi_1: eta_dot_2.psi_1,
-        eta_dot_2_by_psi_2: eta_dot_2.psi_2,
-        eta_dot_2_by_t_phi_alpha_3: eta_dot_2.t_phi_alpha_3,
-        eta_dot_2_by_t_phi_alpha_2: eta_dot_2.t_phi_alpha_2,
-        eta_dot_2_by_t_phi_alpha: eta_dot_2.t_phi_alpha,
-        eta_dot_2_by_t_phi: eta_dot_2.t_phi,
-        eta_dot_2_by_t_alpha_3: eta_dot_2.t_alpha_3,
-        eta_dot_2_by_t_alpha_2: eta_dot_2.t_alpha_2,
-        eta_dot_2_by_t_alpha: eta_dot_2.t_alpha,
-        eta_dot_2_by_t_0: eta_dot_2.t_0,
-        eta_dot_2_by_c_m_alpha_2: eta_dot_2.c_m_alpha_2,
-        eta_dot_2_by_c_m_alpha: eta_dot_2.c_m_alpha,
-        eta_dot_2_by_c_m_delta_e: eta_dot_2.c_m_delta_e,
-        eta_dot_2_by_c_m_0: eta_dot_2.c_m_0,
-        eta_dot_2_by_n_1_alpha_2: eta_dot_2.n_1_alpha_2,
-        eta_dot_2_by_n_1_alpha: eta_dot_2.n_1_alpha,
-        eta_dot_2_by_n_1_0: eta_dot_2.n_1_0,
-        eta_dot_2_by_n_2_alpha_2: eta_dot_2.n_2_alpha_2,
-        eta_dot_2_by_n_2_alpha: eta_dot_2.n_2_alpha,
-        eta_dot_2_by_n_2_delta_e: eta_dot_2.n_2_delta_e,
-        eta_dot_2_by_n_2_0: eta_dot_2.n_2_0,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        velocity {
+            m, s, rho_0, h_0, h_s, g, r_e, spherical_earth, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_0,
+        }
+        gamma {
+            m, s, rho_0, h_0, h_s, g, r_e, spherical_earth, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_l_alpha, c_l_delta_e, c_l_0,
+        }
+        alpha {
+            m, s, rho_0, h_0, h_s, g, r_e, spherical_earth, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_l_alpha, c_l_delta_e, c_l_0,
+        }
+        pitch_rate {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, omega_1, omega_2, zeta_1, zeta_2, psi_1, psi_2, t_phi_alpha_3,
+            t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0, c_m_alpha_2, c_m_alpha, c_m_delta_e,
+            c_m_0, n_1_alpha_2, n_1_alpha, n_1_0, n_2_alpha_2, n_2_alpha, n_2_delta_e, n_2_0,
+        }
+        eta_dot_1 {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, omega_1, omega_2, zeta_1, zeta_2, psi_1, psi_2, t_phi_alpha_3,
+            t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0, c_m_alpha_2, c_m_alpha, c_m_delta_e,
+            c_m_0, n_1_alpha_2, n_1_alpha, n_1_0, n_2_alpha_2, n_2_alpha, n_2_delta_e, n_2_0,
+        }
+        eta_dot_2 {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, omega_1, omega_2, zeta_1, zeta_2, psi_1, psi_2, t_phi_alpha_3,
+            t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0, c_m_alpha_2, c_m_alpha, c_m_delta_e,
+            c_m_0, n_1_alpha_2, n_1_alpha, n_1_0, n_2_alpha_2, n_2_alpha, n_2_delta_e, n_2_0,
+        }
     }
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by vehicle, environment.
 #[inline(always)]
 fn parameter_jacobian_by_vehicle_environment<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_force_turn_d_m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
+    parameter.gamma.m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
         + i.c_l * s.d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
-    let d_pitch_acceleration_d_i_yy = -i.pitch_acceleration * p.inv_effective_inertia; // rad/s^2/slug/ft
-    let d_eta_acceleration_1_d_i_yy = -p.psi_1 * d_pitch_acceleration_d_i_yy; // 1/ft^0.5/slug^0.5/s^2
-    let d_eta_acceleration_2_d_i_yy = -p.psi_2 * d_pitch_acceleration_d_i_yy; // 1/ft^0.5/slug^0.5/s^2
+    parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_effective_inertia; // rad/s^2/slug/ft
+    parameter.eta_dot_1.i_yy = -p.psi_1 * parameter.pitch_rate.i_yy; // 1/ft^0.5/slug^0.5/s^2
+    parameter.eta_dot_2.i_yy = -p.psi_2 * parameter.pitch_rate.i_yy; // 1/ft^0.5/slug^0.5/s^2
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
     let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0; // lb/ft^2
-    let d_velocity_rate_d_h_0 = -d_drag_d_h_0 * p.inv_m; // 1/s^2
+    parameter.velocity.h_0 = -d_drag_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_force_turn_d_h_0 = i.c_l * d_turn_factor_d_h_0; // rad/s/ft
+    parameter.gamma.h_0 = i.c_l * d_turn_factor_d_h_0; // rad/s/ft
     let d_pitching_moment_d_h_0 = i.c_m * p.c_bar * d_reference_force_d_h_0; // lb/ft
-    let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_effective_inertia; // rad/s^2/ft
-    let d_eta_acceleration_1_d_h_0 = -p.psi_1 * d_pitch_acceleration_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_eta_acceleration_2_d_h_0 = -p.psi_2 * d_pitch_acceleration_d_h_0; // slug^0.5/ft^0.5/s^2
+    parameter.pitch_rate.h_0 = d_pitching_moment_d_h_0 * p.inv_effective_inertia; // rad/s^2/ft
+    parameter.eta_dot_1.h_0 = -p.psi_1 * parameter.pitch_rate.h_0; // slug^0.5/ft^0.5/s^2
+    parameter.eta_dot_2.h_0 = -p.psi_2 * parameter.pitch_rate.h_0; // slug^0.5/ft^0.5/s^2
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft^2
-    let d_velocity_rate_d_h_s = -d_drag_d_h_s * p.inv_m; // 1/s^2
+    parameter.velocity.h_s = -d_drag_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_force_turn_d_h_s = i.c_l * d_turn_factor_d_h_s; // rad/s/ft
+    parameter.gamma.h_s = i.c_l * d_turn_factor_d_h_s; // rad/s/ft
     let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb/ft
-    let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_effective_inertia; // rad/s^2/ft
-    let d_eta_acceleration_1_d_h_s = -p.psi_1 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_eta_acceleration_2_d_h_s = -p.psi_2 * d_pitch_acceleration_d_h_s; // slug^0.5/ft^0.5/s^2
+    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_effective_inertia; // rad/s^2/ft
+    parameter.eta_dot_1.h_s = -p.psi_1 * parameter.pitch_rate.h_s; // slug^0.5/ft^0.5/s^2
+    parameter.eta_dot_2.h_s = -p.psi_2 * parameter.pitch_rate.h_s; // slug^0.5/ft^0.5/s^2
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
                 - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
 
-    parameter.velocity_by_m = -i.path_force * p.inv_m_2;
-    parameter.velocity_by_s = -i.c_d * i.dynamic_pressure * p.inv_m;
-    parameter.gamma_by_m = d_force_turn_d_m;
-    parameter.gamma_by_s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
-    parameter.alpha_by_m = -d_force_turn_d_m;
-    parameter.alpha_by_s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
-    parameter.pitch_rate_by_i_yy = d_pitch_acceleration_d_i_yy;
-    parameter.pitch_rate_by_s = i.c_m * p.c_bar_over_effective_inertia
-        * i.dynamic_pressure;
-    parameter.pitch_rate_by_c_bar = i.c_m * i.reference_force * p.inv_effective_inertia;
-    parameter.pitch_rate_by_z_t = i.thrust * p.inv_effective_inertia;
-    parameter.eta_dot_1_by_i_yy = d_eta_acceleration_1_d_i_yy;
-    parameter.eta_dot_1_by_s = -p.psi_1_c_bar_over_effective_inertia * i.c_m
-        * i.dynamic_pressure;
-    parameter.eta_dot_1_by_c_bar = -p.psi_1_over_effective_inertia * i.c_m
-        * i.reference_force;
-    parameter.eta_dot_1_by_z_t = -p.psi_1_over_effective_inertia * i.thrust;
-    parameter.eta_dot_2_by_i_yy = d_eta_acceleration_2_d_i_yy;
-    parameter.eta_dot_2_by_s = -p.psi_2_c_bar_over_effective_inertia * i.c_m
-        * i.dynamic_pressure;
-    parameter.eta_dot_2_by_c_bar = -p.psi_2_over_effective_inertia * i.c_m
-        * i.reference_force;
-    parameter.eta_dot_2_by_z_t = -p.psi_2_over_effective_inertia * i.thrust;
-    parameter.velocity_by_rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2
+    parameter.velocity.m = -i.path_force * p.inv_m_2;
+    parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
+    parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
+    parameter.alpha.m = -parameter.gamma.m;
+    parameter.alpha.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
+    parameter.pitch_rate.s = i.c_m * p.c_bar_over_effective_inertia * i.dynamic_pressure;
+    parameter.pitch_rate.c_bar = i.c_m * i.reference_force * p.inv_effective_inertia;
+    parameter.pitch_rate.z_t = i.thrust * p.inv_effective_inertia;
+    parameter.eta_dot_1.s = -p.psi_1_c_bar_over_effective_inertia * i.c_m * i.dynamic_pressure;
+    parameter.eta_dot_1.c_bar = -p.psi_1_over_effective_inertia * i.c_m * i.reference_force;
+    parameter.eta_dot_1.z_t = -p.psi_1_over_effective_inertia * i.thrust;
+    parameter.eta_dot_2.s = -p.psi_2_c_bar_over_effective_inertia * i.c_m * i.dynamic_pressure;
+    parameter.eta_dot_2.c_bar = -p.psi_2_over_effective_inertia * i.c_m * i.reference_force;
+    parameter.eta_dot_2.z_t = -p.psi_2_over_effective_inertia * i.thrust;
+    parameter.velocity.rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2 * i.density_ratio;
+    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma.rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
+    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio;
+    parameter.alpha.h_0 = -parameter.gamma.h_0;
+    parameter.alpha.h_s = -parameter.gamma.h_s;
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.r_e = -parameter.gamma.r_e;
+    parameter.pitch_rate.rho_0 = i.c_m * p.half_c_bar_s_over_effective_inertia * i.velocity_2 * i.density_ratio;
+    parameter.eta_dot_1.rho_0 = p.minus_half_psi_1_c_bar_s_over_effective_inertia * i.c_m * i.velocity_2
         * i.density_ratio;
-    parameter.velocity_by_h_0 = d_velocity_rate_d_h_0;
-    parameter.velocity_by_h_s = d_velocity_rate_d_h_s;
-    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
-    parameter.gamma_by_h_0 = d_force_turn_d_h_0;
-    parameter.gamma_by_h_s = d_force_turn_d_h_s;
-    parameter.gamma_by_g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.gamma_by_r_e = d_gamma_rate_d_r_e;
-    parameter.alpha_by_rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity
+    parameter.eta_dot_2.rho_0 = p.minus_half_psi_2_c_bar_s_over_effective_inertia * i.c_m * i.velocity_2
         * i.density_ratio;
-    parameter.alpha_by_h_0 = -d_force_turn_d_h_0;
-    parameter.alpha_by_h_s = -d_force_turn_d_h_s;
-    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha_by_r_e = -d_gamma_rate_d_r_e;
-    parameter.pitch_rate_by_rho_0 = i.c_m * p.half_c_bar_s_over_effective_inertia
-        * i.velocity_2 * i.density_ratio;
-    parameter.pitch_rate_by_h_0 = d_pitch_acceleration_d_h_0;
-    parameter.pitch_rate_by_h_s = d_pitch_acceleration_d_h_s;
-    parameter.eta_dot_1_by_rho_0 = p.minus_half_psi_1_c_bar_s_over_effective_inertia
-        * i.c_m * i.velocity_2 * i.density_ratio;
-    parameter.eta_dot_1_by_h_0 = d_eta_acceleration_1_d_h_0;
-    parameter.eta_dot_1_by_h_s = d_eta_acceleration_1_d_h_s;
-    parameter.eta_dot_2_by_rho_0 = p.minus_half_psi_2_c_bar_s_over_effective_inertia
-        * i.c_m * i.velocity_2 * i.density_ratio;
-    parameter.eta_dot_2_by_h_0 = d_eta_acceleration_2_d_h_0;
-    parameter.eta_dot_2_by_h_s = d_eta_acceleration_2_d_h_s;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by choices, t, c_d, c_l.
 #[inline(always)]
 fn parameter_jacobian_by_choices_to_c_l<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
@@ -290,216 +130,149 @@ fn parameter_jacobian_by_choices_to_c_l<R: Real>(
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
-    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
-    parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
-    parameter.velocity_by_t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
-    parameter.velocity_by_t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
-    parameter.velocity_by_t_phi = i.cos_alpha * u.phi * p.inv_m;
-    parameter.velocity_by_t_alpha_3 = i.cos_alpha * i.alpha_3 * p.inv_m;
-    parameter.velocity_by_t_alpha_2 = i.cos_alpha * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_t_alpha = i.cos_alpha * x.alpha * p.inv_m;
-    parameter.velocity_by_t_0 = i.cos_alpha * p.inv_m;
-    parameter.gamma_by_t_phi_alpha_3 = i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_3;
-    parameter.gamma_by_t_phi_alpha_2 = i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_2;
-    parameter.gamma_by_t_phi_alpha = i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
-    parameter.gamma_by_t_phi = i.inverse_momentum * i.sin_alpha * u.phi;
-    parameter.gamma_by_t_alpha_3 = i.inverse_momentum * i.sin_alpha * i.alpha_3;
-    parameter.gamma_by_t_alpha_2 = i.inverse_momentum * i.sin_alpha * i.alpha_2;
-    parameter.gamma_by_t_alpha = i.inverse_momentum * i.sin_alpha * x.alpha;
-    parameter.gamma_by_t_0 = i.inverse_momentum * i.sin_alpha;
-    parameter.alpha_by_t_phi_alpha_3 = -i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_3;
-    parameter.alpha_by_t_phi_alpha_2 = -i.inverse_momentum * i.sin_alpha * u.phi
-        * i.alpha_2;
-    parameter.alpha_by_t_phi_alpha = -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
-    parameter.alpha_by_t_phi = -i.inverse_momentum * i.sin_alpha * u.phi;
-    parameter.alpha_by_t_alpha_3 = -i.inverse_momentum * i.sin_alpha * i.alpha_3;
-    parameter.alpha_by_t_alpha_2 = -i.inverse_momentum * i.sin_alpha * i.alpha_2;
-    parameter.alpha_by_t_alpha = -i.inverse_momentum * i.sin_alpha * x.alpha;
-    parameter.alpha_by_t_0 = -i.inverse_momentum * i.sin_alpha;
-    parameter.pitch_rate_by_t_phi_alpha_3 = p.z_t_over_effective_inertia * u.phi
-        * i.alpha_3;
-    parameter.pitch_rate_by_t_phi_alpha_2 = p.z_t_over_effective_inertia * u.phi
-        * i.alpha_2;
-    parameter.pitch_rate_by_t_phi_alpha = p.z_t_over_effective_inertia * u.phi * x.alpha;
-    parameter.pitch_rate_by_t_phi = p.z_t_over_effective_inertia * u.phi;
-    parameter.pitch_rate_by_t_alpha_3 = p.z_t_over_effective_inertia * i.alpha_3;
-    parameter.pitch_rate_by_t_alpha_2 = p.z_t_over_effective_inertia * i.alpha_2;
-    parameter.pitch_rate_by_t_alpha = p.z_t_over_effective_inertia * x.alpha;
-    parameter.pitch_rate_by_t_0 = p.z_t_over_effective_inertia;
-    parameter.eta_dot_1_by_t_phi_alpha_3 = -p.psi_1_z_t_over_effective_inertia * u.phi
-        * i.alpha_3;
-    parameter.eta_dot_1_by_t_phi_alpha_2 = -p.psi_1_z_t_over_effective_inertia * u.phi
-        * i.alpha_2;
-    parameter.eta_dot_1_by_t_phi_alpha = -p.psi_1_z_t_over_effective_inertia * u.phi
-        * x.alpha;
-    parameter.eta_dot_1_by_t_phi = -p.psi_1_z_t_over_effective_inertia * u.phi;
-    parameter.eta_dot_1_by_t_alpha_3 = -p.psi_1_z_t_over_effective_inertia * i.alpha_3;
-    parameter.eta_dot_1_by_t_alpha_2 = -p.psi_1_z_t_over_effective_inertia * i.alpha_2;
-    parameter.eta_dot_1_by_t_alpha = -p.psi_1_z_t_over_effective_inertia * x.alpha;
-    parameter.eta_dot_1_by_t_0 = p.minus_psi_1_z_t_over_effective_inertia;
-    parameter.eta_dot_2_by_t_phi_alpha_3 = -p.psi_2_z_t_over_effective_inertia * u.phi
-        * i.alpha_3;
-    parameter.eta_dot_2_by_t_phi_alpha_2 = -p.psi_2_z_t_over_effective_inertia * u.phi
-        * i.alpha_2;
-    parameter.eta_dot_2_by_t_phi_alpha = -p.psi_2_z_t_over_effective_inertia * u.phi
-        * x.alpha;
-    parameter.eta_dot_2_by_t_phi = -p.psi_2_z_t_over_effective_inertia * u.phi;
-    parameter.eta_dot_2_by_t_alpha_3 = -p.psi_2_z_t_over_effective_inertia * i.alpha_3;
-    parameter.eta_dot_2_by_t_alpha_2 = -p.psi_2_z_t_over_effective_inertia * i.alpha_2;
-    parameter.eta_dot_2_by_t_alpha = -p.psi_2_z_t_over_effective_inertia * x.alpha;
-    parameter.eta_dot_2_by_t_0 = p.minus_psi_2_z_t_over_effective_inertia;
-    parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
-    parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
-    parameter.velocity_by_c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
-    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
-    parameter.gamma_by_c_l_alpha = i.turn_factor * x.alpha;
-    parameter.gamma_by_c_l_delta_e = i.turn_factor * u.delta_e;
-    parameter.gamma_by_c_l_0 = i.turn_factor;
-    parameter.alpha_by_c_l_alpha = -i.turn_factor * x.alpha;
-    parameter.alpha_by_c_l_delta_e = -i.turn_factor * u.delta_e;
-    parameter.alpha_by_c_l_0 = -i.turn_factor;
+    parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
+    parameter.velocity.t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
+    parameter.velocity.t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
+    parameter.velocity.t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
+    parameter.velocity.t_phi = i.cos_alpha * u.phi * p.inv_m;
+    parameter.velocity.t_alpha_3 = i.cos_alpha * i.alpha_3 * p.inv_m;
+    parameter.velocity.t_alpha_2 = i.cos_alpha * i.alpha_2 * p.inv_m;
+    parameter.velocity.t_alpha = i.cos_alpha * x.alpha * p.inv_m;
+    parameter.velocity.t_0 = i.cos_alpha * p.inv_m;
+    parameter.gamma.t_phi_alpha_3 = i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3;
+    parameter.gamma.t_phi_alpha_2 = i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2;
+    parameter.gamma.t_phi_alpha = i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
+    parameter.gamma.t_phi = i.inverse_momentum * i.sin_alpha * u.phi;
+    parameter.gamma.t_alpha_3 = i.inverse_momentum * i.sin_alpha * i.alpha_3;
+    parameter.gamma.t_alpha_2 = i.inverse_momentum * i.sin_alpha * i.alpha_2;
+    parameter.gamma.t_alpha = i.inverse_momentum * i.sin_alpha * x.alpha;
+    parameter.gamma.t_0 = i.inverse_momentum * i.sin_alpha;
+    parameter.alpha.t_phi_alpha_3 = -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3;
+    parameter.alpha.t_phi_alpha_2 = -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2;
+    parameter.alpha.t_phi_alpha = -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
+    parameter.alpha.t_phi = -i.inverse_momentum * i.sin_alpha * u.phi;
+    parameter.alpha.t_alpha_3 = -i.inverse_momentum * i.sin_alpha * i.alpha_3;
+    parameter.alpha.t_alpha_2 = -i.inverse_momentum * i.sin_alpha * i.alpha_2;
+    parameter.alpha.t_alpha = -i.inverse_momentum * i.sin_alpha * x.alpha;
+    parameter.alpha.t_0 = -i.inverse_momentum * i.sin_alpha;
+    parameter.pitch_rate.t_phi_alpha_3 = p.z_t_over_effective_inertia * u.phi * i.alpha_3;
+    parameter.pitch_rate.t_phi_alpha_2 = p.z_t_over_effective_inertia * u.phi * i.alpha_2;
+    parameter.pitch_rate.t_phi_alpha = p.z_t_over_effective_inertia * u.phi * x.alpha;
+    parameter.pitch_rate.t_phi = p.z_t_over_effective_inertia * u.phi;
+    parameter.pitch_rate.t_alpha_3 = p.z_t_over_effective_inertia * i.alpha_3;
+    parameter.pitch_rate.t_alpha_2 = p.z_t_over_effective_inertia * i.alpha_2;
+    parameter.pitch_rate.t_alpha = p.z_t_over_effective_inertia * x.alpha;
+    parameter.pitch_rate.t_0 = p.z_t_over_effective_inertia;
+    parameter.eta_dot_1.t_phi_alpha_3 = -p.psi_1_z_t_over_effective_inertia * u.phi * i.alpha_3;
+    parameter.eta_dot_1.t_phi_alpha_2 = -p.psi_1_z_t_over_effective_inertia * u.phi * i.alpha_2;
+    parameter.eta_dot_1.t_phi_alpha = -p.psi_1_z_t_over_effective_inertia * u.phi * x.alpha;
+    parameter.eta_dot_1.t_phi = -p.psi_1_z_t_over_effective_inertia * u.phi;
+    parameter.eta_dot_1.t_alpha_3 = -p.psi_1_z_t_over_effective_inertia * i.alpha_3;
+    parameter.eta_dot_1.t_alpha_2 = -p.psi_1_z_t_over_effective_inertia * i.alpha_2;
+    parameter.eta_dot_1.t_alpha = -p.psi_1_z_t_over_effective_inertia * x.alpha;
+    parameter.eta_dot_1.t_0 = p.minus_psi_1_z_t_over_effective_inertia;
+    parameter.eta_dot_2.t_phi_alpha_3 = -p.psi_2_z_t_over_effective_inertia * u.phi * i.alpha_3;
+    parameter.eta_dot_2.t_phi_alpha_2 = -p.psi_2_z_t_over_effective_inertia * u.phi * i.alpha_2;
+    parameter.eta_dot_2.t_phi_alpha = -p.psi_2_z_t_over_effective_inertia * u.phi * x.alpha;
+    parameter.eta_dot_2.t_phi = -p.psi_2_z_t_over_effective_inertia * u.phi;
+    parameter.eta_dot_2.t_alpha_3 = -p.psi_2_z_t_over_effective_inertia * i.alpha_3;
+    parameter.eta_dot_2.t_alpha_2 = -p.psi_2_z_t_over_effective_inertia * i.alpha_2;
+    parameter.eta_dot_2.t_alpha = -p.psi_2_z_t_over_effective_inertia * x.alpha;
+    parameter.eta_dot_2.t_0 = p.minus_psi_2_z_t_over_effective_inertia;
+    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
+    parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
+    parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+    parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
+    parameter.gamma.c_l_delta_e = i.turn_factor * u.delta_e;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.alpha.c_l_alpha = -i.turn_factor * x.alpha;
+    parameter.alpha.c_l_delta_e = -i.turn_factor * u.delta_e;
+    parameter.alpha.c_l_0 = -i.turn_factor;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by modes, c_m, n_1.
 #[inline(always)]
 fn parameter_jacobian_by_modes_to_n_1<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_modal_load_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1
-        + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
-    let d_pitch_acceleration_d_omega_1 = -p.psi_1_over_effective_inertia
-        * d_modal_load_1_d_omega_1; // 1/s
-    let d_eta_acceleration_1_d_omega_1 = d_modal_load_1_d_omega_1
-        - p.psi_1 * d_pitch_acceleration_d_omega_1; // ft^0.5*slug^0.5/s/rad
-    let d_eta_acceleration_2_d_omega_1 = -p.psi_2 * d_pitch_acceleration_d_omega_1; // ft^0.5*slug^0.5/s/rad
-    let d_modal_load_2_d_omega_2 = -(x.eta_dot_2 * p.two_zeta_2
-        + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
-    let d_pitch_acceleration_d_omega_2 = -p.psi_2_over_effective_inertia
-        * d_modal_load_2_d_omega_2; // 1/s
-    let d_eta_acceleration_1_d_omega_2 = -p.psi_1 * d_pitch_acceleration_d_omega_2; // ft^0.5*slug^0.5/s/rad
-    let d_eta_acceleration_2_d_omega_2 = d_modal_load_2_d_omega_2
-        - p.psi_2 * d_pitch_acceleration_d_omega_2; // ft^0.5*slug^0.5/s/rad
-    let d_eta_acceleration_1_d_zeta_1 = -p.omega_1
+    let d_modal_load_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1 + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
+    parameter.pitch_rate.omega_1 = -p.psi_1_over_effective_inertia * d_modal_load_1_d_omega_1; // 1/s
+    // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_1.omega_1 = d_modal_load_1_d_omega_1 - p.psi_1 * parameter.pitch_rate.omega_1;
+    parameter.eta_dot_2.omega_1 = -p.psi_2 * parameter.pitch_rate.omega_1; // ft^0.5*slug^0.5/s/rad
+    let d_modal_load_2_d_omega_2 = -(x.eta_dot_2 * p.two_zeta_2 + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
+    parameter.pitch_rate.omega_2 = -p.psi_2_over_effective_inertia * d_modal_load_2_d_omega_2; // 1/s
+    parameter.eta_dot_1.omega_2 = -p.psi_1 * parameter.pitch_rate.omega_2; // ft^0.5*slug^0.5/s/rad
+    // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_2.omega_2 = d_modal_load_2_d_omega_2 - p.psi_2 * parameter.pitch_rate.omega_2;
+    parameter.eta_dot_1.zeta_1 = -p.omega_1
         * (R::TWO * x.eta_dot_1 + p.two_psi_1_2_over_effective_inertia * x.eta_dot_1); // (ft*slug)^0.5/s^2
-    let d_eta_acceleration_2_d_zeta_2 = -p.omega_2
+    parameter.eta_dot_2.zeta_2 = -p.omega_2
         * (R::TWO * x.eta_dot_2 + p.two_psi_2_2_over_effective_inertia * x.eta_dot_2); // (ft*slug)^0.5/s^2
-    let d_pitch_acceleration_d_psi_1 = p.inv_effective_inertia
+    parameter.pitch_rate.psi_1 = p.inv_effective_inertia
         * (i.pitch_acceleration * p.two_psi_1 - i.modal_load_1); // rad/s^2/ft^0.5/slug^0.5
-    let d_eta_acceleration_1_d_psi_1 = -(i.pitch_acceleration
-        + p.psi_1 * d_pitch_acceleration_d_psi_1); // 1/s^2
-    let d_eta_acceleration_2_d_psi_1 = -p.psi_2 * d_pitch_acceleration_d_psi_1; // 1/s^2
-    let d_pitch_acceleration_d_psi_2 = p.inv_effective_inertia
+    parameter.eta_dot_1.psi_1 = -(i.pitch_acceleration + p.psi_1 * parameter.pitch_rate.psi_1); // 1/s^2
+    parameter.eta_dot_2.psi_1 = -p.psi_2 * parameter.pitch_rate.psi_1; // 1/s^2
+    parameter.pitch_rate.psi_2 = p.inv_effective_inertia
         * (i.pitch_acceleration * p.two_psi_2 - i.modal_load_2); // rad/s^2/ft^0.5/slug^0.5
-    let d_eta_acceleration_1_d_psi_2 = -p.psi_1 * d_pitch_acceleration_d_psi_2; // 1/s^2
-    let d_eta_acceleration_2_d_psi_2 = -(i.pitch_acceleration
-        + p.psi_2 * d_pitch_acceleration_d_psi_2); // 1/s^2
-    let d_eta_acceleration_1_d_n_1_alpha_2 = i.alpha_2
-        + p.psi_1_2_over_effective_inertia * i.alpha_2; // rad^2
-    let d_eta_acceleration_1_d_n_1_alpha = x.alpha
-        + p.psi_1_2_over_effective_inertia * x.alpha; // rad
+    parameter.eta_dot_1.psi_2 = -p.psi_1 * parameter.pitch_rate.psi_2; // 1/s^2
+    parameter.eta_dot_2.psi_2 = -(i.pitch_acceleration + p.psi_2 * parameter.pitch_rate.psi_2); // 1/s^2
+    parameter.eta_dot_1.n_1_alpha_2 = i.alpha_2 + p.psi_1_2_over_effective_inertia * i.alpha_2; // rad^2
+    parameter.eta_dot_1.n_1_alpha = x.alpha + p.psi_1_2_over_effective_inertia * x.alpha; // rad
 
-    parameter.pitch_rate_by_omega_1 = d_pitch_acceleration_d_omega_1;
-    parameter.pitch_rate_by_omega_2 = d_pitch_acceleration_d_omega_2;
-    parameter.pitch_rate_by_zeta_1 = p.two_psi_1_omega_1_over_effective_inertia
-        * x.eta_dot_1;
-    parameter.pitch_rate_by_zeta_2 = p.two_psi_2_omega_2_over_effective_inertia
-        * x.eta_dot_2;
-    parameter.pitch_rate_by_psi_1 = d_pitch_acceleration_d_psi_1;
-    parameter.pitch_rate_by_psi_2 = d_pitch_acceleration_d_psi_2;
-    parameter.eta_dot_1_by_omega_1 = d_eta_acceleration_1_d_omega_1;
-    parameter.eta_dot_1_by_omega_2 = d_eta_acceleration_1_d_omega_2;
-    parameter.eta_dot_1_by_zeta_1 = d_eta_acceleration_1_d_zeta_1;
-    parameter.eta_dot_1_by_zeta_2 = p
-        .minus_two_psi_1_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
-    parameter.eta_dot_1_by_psi_1 = d_eta_acceleration_1_d_psi_1;
-    parameter.eta_dot_1_by_psi_2 = d_eta_acceleration_1_d_psi_2;
-    parameter.eta_dot_2_by_omega_1 = d_eta_acceleration_2_d_omega_1;
-    parameter.eta_dot_2_by_omega_2 = d_eta_acceleration_2_d_omega_2;
-    parameter.eta_dot_2_by_zeta_1 = p
-        .minus_two_psi_2_psi_1_omega_1_over_effective_inertia * x.eta_dot_1;
-    parameter.eta_dot_2_by_zeta_2 = d_eta_acceleration_2_d_zeta_2;
-    parameter.eta_dot_2_by_psi_1 = d_eta_acceleration_2_d_psi_1;
-    parameter.eta_dot_2_by_psi_2 = d_eta_acceleration_2_d_psi_2;
-    parameter.pitch_rate_by_c_m_alpha_2 = i.reference_force
-        * p.c_bar_over_effective_inertia * i.alpha_2;
-    parameter.pitch_rate_by_c_m_alpha = i.reference_force
-        * p.c_bar_over_effective_inertia * x.alpha;
-    parameter.pitch_rate_by_c_m_delta_e = i.reference_force
-        * p.c_bar_over_effective_inertia * u.delta_e;
-    parameter.pitch_rate_by_c_m_0 = i.reference_force * p.c_bar_over_effective_inertia;
-    parameter.eta_dot_1_by_c_m_alpha_2 = -p.psi_1_c_bar_over_effective_inertia
-        * i.reference_force * i.alpha_2;
-    parameter.eta_dot_1_by_c_m_alpha = -p.psi_1_c_bar_over_effective_inertia
-        * i.reference_force * x.alpha;
-    parameter.eta_dot_1_by_c_m_delta_e = -p.psi_1_c_bar_over_effective_inertia
-        * i.reference_force * u.delta_e;
-    parameter.eta_dot_1_by_c_m_0 = -p.psi_1_c_bar_over_effective_inertia
-        * i.reference_force;
-    parameter.eta_dot_2_by_c_m_alpha_2 = -p.psi_2_c_bar_over_effective_inertia
-        * i.reference_force * i.alpha_2;
-    parameter.eta_dot_2_by_c_m_alpha = -p.psi_2_c_bar_over_effective_inertia
-        * i.reference_force * x.alpha;
-    parameter.eta_dot_2_by_c_m_delta_e = -p.psi_2_c_bar_over_effective_inertia
-        * i.reference_force * u.delta_e;
-    parameter.eta_dot_2_by_c_m_0 = -p.psi_2_c_bar_over_effective_inertia
-        * i.reference_force;
-    parameter.pitch_rate_by_n_1_alpha_2 = -p.psi_1_over_effective_inertia * i.alpha_2;
-    parameter.pitch_rate_by_n_1_alpha = -p.psi_1_over_effective_inertia * x.alpha;
-    parameter.pitch_rate_by_n_1_0 = p.minus_psi_1_over_effective_inertia;
-    parameter.eta_dot_1_by_n_1_alpha_2 = d_eta_acceleration_1_d_n_1_alpha_2;
-    parameter.eta_dot_1_by_n_1_alpha = d_eta_acceleration_1_d_n_1_alpha;
-    parameter.eta_dot_1_by_n_1_0 = p.d_eta_acceleration_1_d_n_1_0;
-    parameter.eta_dot_2_by_n_1_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
-    parameter.eta_dot_2_by_n_1_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
-    parameter.eta_dot_2_by_n_1_0 = p.psi_1_psi_2_over_effective_inertia;
+    parameter.pitch_rate.zeta_1 = p.two_psi_1_omega_1_over_effective_inertia * x.eta_dot_1;
+    parameter.pitch_rate.zeta_2 = p.two_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
+    parameter.eta_dot_1.zeta_2 = p.minus_two_psi_1_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
+    parameter.eta_dot_2.zeta_1 = p.minus_two_psi_2_psi_1_omega_1_over_effective_inertia * x.eta_dot_1;
+    parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_effective_inertia * i.alpha_2;
+    parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_effective_inertia * x.alpha;
+    parameter.pitch_rate.c_m_delta_e = i.reference_force * p.c_bar_over_effective_inertia * u.delta_e;
+    parameter.pitch_rate.c_m_0 = i.reference_force * p.c_bar_over_effective_inertia;
+    parameter.eta_dot_1.c_m_alpha_2 = -p.psi_1_c_bar_over_effective_inertia * i.reference_force * i.alpha_2;
+    parameter.eta_dot_1.c_m_alpha = -p.psi_1_c_bar_over_effective_inertia * i.reference_force * x.alpha;
+    parameter.eta_dot_1.c_m_delta_e = -p.psi_1_c_bar_over_effective_inertia * i.reference_force * u.delta_e;
+    parameter.eta_dot_1.c_m_0 = -p.psi_1_c_bar_over_effective_inertia * i.reference_force;
+    parameter.eta_dot_2.c_m_alpha_2 = -p.psi_2_c_bar_over_effective_inertia * i.reference_force * i.alpha_2;
+    parameter.eta_dot_2.c_m_alpha = -p.psi_2_c_bar_over_effective_inertia * i.reference_force * x.alpha;
+    parameter.eta_dot_2.c_m_delta_e = -p.psi_2_c_bar_over_effective_inertia * i.reference_force * u.delta_e;
+    parameter.eta_dot_2.c_m_0 = -p.psi_2_c_bar_over_effective_inertia * i.reference_force;
+    parameter.pitch_rate.n_1_alpha_2 = -p.psi_1_over_effective_inertia * i.alpha_2;
+    parameter.pitch_rate.n_1_alpha = -p.psi_1_over_effective_inertia * x.alpha;
+    parameter.pitch_rate.n_1_0 = p.minus_psi_1_over_effective_inertia;
+    parameter.eta_dot_1.n_1_0 = p.d_eta_acceleration_1_d_n_1_0;
+    parameter.eta_dot_2.n_1_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
+    parameter.eta_dot_2.n_1_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
+    parameter.eta_dot_2.n_1_0 = p.psi_1_psi_2_over_effective_inertia;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by n_2.
 #[inline(always)]
 fn parameter_jacobian_by_n_2<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_eta_acceleration_2_d_n_2_alpha_2 = i.alpha_2
-        + p.psi_2_2_over_effective_inertia * i.alpha_2; // rad^2
-    let d_eta_acceleration_2_d_n_2_alpha = x.alpha
-        + p.psi_2_2_over_effective_inertia * x.alpha; // rad
-    let d_eta_acceleration_2_d_n_2_delta_e = u.delta_e
-        + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
+    parameter.eta_dot_2.n_2_alpha_2 = i.alpha_2 + p.psi_2_2_over_effective_inertia * i.alpha_2; // rad^2
+    parameter.eta_dot_2.n_2_alpha = x.alpha + p.psi_2_2_over_effective_inertia * x.alpha; // rad
+    parameter.eta_dot_2.n_2_delta_e = u.delta_e + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
 
-    parameter.pitch_rate_by_n_2_alpha_2 = -p.psi_2_over_effective_inertia * i.alpha_2;
-    parameter.pitch_rate_by_n_2_alpha = -p.psi_2_over_effective_inertia * x.alpha;
-    parameter.pitch_rate_by_n_2_delta_e = -p.psi_2_over_effective_inertia * u.delta_e;
-    parameter.pitch_rate_by_n_2_0 = p.minus_psi_2_over_effective_inertia;
-    parameter.eta_dot_1_by_n_2_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
-    parameter.eta_dot_1_by_n_2_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
-    parameter.eta_dot_1_by_n_2_delta_e = p.psi_1_psi_2_over_effective_inertia
-        * u.delta_e;
-    parameter.eta_dot_1_by_n_2_0 = p.psi_1_psi_2_over_effective_inertia;
-    parameter.eta_dot_2_by_n_2_alpha_2 = d_eta_acceleration_2_d_n_2_alpha_2;
-    parameter.eta_dot_2_by_n_2_alpha = d_eta_acceleration_2_d_n_2_alpha;
-    parameter.eta_dot_2_by_n_2_delta_e = d_eta_acceleration_2_d_n_2_delta_e;
-    parameter.eta_dot_2_by_n_2_0 = p.d_eta_acceleration_2_d_n_2_0;
+    parameter.pitch_rate.n_2_alpha_2 = -p.psi_2_over_effective_inertia * i.alpha_2;
+    parameter.pitch_rate.n_2_alpha = -p.psi_2_over_effective_inertia * x.alpha;
+    parameter.pitch_rate.n_2_delta_e = -p.psi_2_over_effective_inertia * u.delta_e;
+    parameter.pitch_rate.n_2_0 = p.minus_psi_2_over_effective_inertia;
+    parameter.eta_dot_1.n_2_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
+    parameter.eta_dot_1.n_2_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
+    parameter.eta_dot_1.n_2_delta_e = p.psi_1_psi_2_over_effective_inertia * u.delta_e;
+    parameter.eta_dot_1.n_2_0 = p.psi_1_psi_2_over_effective_inertia;
+    parameter.eta_dot_2.n_2_0 = p.d_eta_acceleration_2_d_n_2_0;
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
@@ -508,11 +281,7 @@ fn parameter_jacobian_by_n_2<R: Real>(
 ///
 /// 369 operations: 51 additions, 313 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let q = sensitivities(x, u, p, &i);
@@ -526,10 +295,6 @@ pub fn parameter_jacobian_values<R: Real>(
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

@@ -4,145 +4,96 @@
 
 use ahv_core::Bounds;
 
-/// One value for each parameter and coefficient of the table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Parameters<T> {
-    /// Vehicle mass, slug/ft.
-    pub m: T,
-    /// Pitch moment of inertia, slug*ft.
-    pub i_yy: T,
-    /// Reference area, ft.
-    pub s: T,
-    /// Mean aerodynamic chord, ft.
-    pub c_bar: T,
-    /// Thrust-to-moment coupling arm, ft.
-    pub z_t: T,
-    /// Air density at the reference altitude, slug/ft^3.
-    pub rho_0: T,
-    /// Reference altitude of the air density, ft.
-    pub h_0: T,
-    /// Scale height of the air density, ft.
-    pub h_s: T,
-    /// Acceleration of gravity at sea level, ft/s^2.
-    pub g: T,
-    /// Radius of the Earth, ft.
-    pub r_e: T,
-    /// Natural frequency of mode 1, rad/s.
-    pub omega_1: T,
-    /// Natural frequency of mode 2, rad/s.
-    pub omega_2: T,
-    /// Damping ratio of mode 1, dimensionless.
-    pub zeta_1: T,
-    /// Damping ratio of mode 2, dimensionless.
-    pub zeta_2: T,
-    /// Inertial coupling of mode 1 with the pitch rate, (ft*slug)^0.5.
-    pub psi_1: T,
-    /// Inertial coupling of mode 2 with the pitch rate, (ft*slug)^0.5.
-    pub psi_2: T,
-    /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
-    pub spherical_earth: T,
-    /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
-    pub t_phi_alpha_3: T,
-    /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
-    pub t_phi_alpha_2: T,
-    /// Coefficient of phi*alpha in T, lb/ft/rad.
-    pub t_phi_alpha: T,
-    /// Coefficient of phi in T, lb/ft.
-    pub t_phi: T,
-    /// Coefficient of alpha^3 in T, lb/ft/rad^3.
-    pub t_alpha_3: T,
-    /// Coefficient of alpha^2 in T, lb/ft/rad^2.
-    pub t_alpha_2: T,
-    /// Coefficient of alpha in T, lb/ft/rad.
-    pub t_alpha: T,
-    /// Constant part of T, lb/ft.
-    pub t_0: T,
-    /// Coefficient of alpha in C_L, 1/rad.
-    pub c_l_alpha: T,
-    /// Coefficient of delta_e in C_L, 1/rad.
-    pub c_l_delta_e: T,
-    /// Constant part of C_L, dimensionless.
-    pub c_l_0: T,
-    /// Coefficient of alpha^2 in C_D, 1/rad^2.
-    pub c_d_alpha_2: T,
-    /// Coefficient of alpha in C_D, 1/rad.
-    pub c_d_alpha: T,
-    /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-    pub c_d_delta_e_2: T,
-    /// Coefficient of delta_e in C_D, 1/rad.
-    pub c_d_delta_e: T,
-    /// Constant part of C_D, dimensionless.
-    pub c_d_0: T,
-    /// Coefficient of alpha^2 in C_M, 1/rad^2.
-    pub c_m_alpha_2: T,
-    /// Coefficient of alpha in C_M, 1/rad.
-    pub c_m_alpha: T,
-    /// Coefficient of delta_e in C_M, 1/rad.
-    pub c_m_delta_e: T,
-    /// Constant part of C_M, dimensionless.
-    pub c_m_0: T,
-    /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
-    pub n_1_alpha_2: T,
-    /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
-    pub n_1_alpha: T,
-    /// Constant part of N_1, (ft*slug)^0.5/s^2.
-    pub n_1_0: T,
-    /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
-    pub n_2_alpha_2: T,
-    /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
-    pub n_2_alpha: T,
-    /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
-    pub n_2_delta_e: T,
-    /// Constant part of N_2, (ft*slug)^0.5/s^2.
-    pub n_2_0: T,
-}
-
-ahv_core::impl_vector! {
-    Parameters {
+ahv_core::vector! {
+    /// One value for each parameter and coefficient of the table.
+    pub struct Parameters<T> {
+        /// Vehicle mass, slug/ft.
         m: ["slug/ft", "kg/m", 47.880258980335846],
+        /// Pitch moment of inertia, slug*ft.
         i_yy: ["slug*ft", "kg*m", 4.4482216152605],
+        /// Reference area, ft.
         s: ["ft", "m", 0.3048],
+        /// Mean aerodynamic chord, ft.
         c_bar: ["ft", "m", 0.3048],
+        /// Thrust-to-moment coupling arm, ft.
         z_t: ["ft", "m", 0.3048],
+        /// Air density at the reference altitude, slug/ft^3.
         rho_0: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        /// Reference altitude of the air density, ft.
         h_0: ["ft", "m", 0.3048],
+        /// Scale height of the air density, ft.
         h_s: ["ft", "m", 0.3048],
+        /// Acceleration of gravity at sea level, ft/s^2.
         g: ["ft/s^2", "m/s^2", 0.3048],
+        /// Radius of the Earth, ft.
         r_e: ["ft", "m", 0.3048],
+        /// Natural frequency of mode 1, rad/s.
         omega_1: ["rad/s", "rad/s", 1.0],
+        /// Natural frequency of mode 2, rad/s.
         omega_2: ["rad/s", "rad/s", 1.0],
+        /// Damping ratio of mode 1, dimensionless.
         zeta_1: ["1", "1", 1.0],
+        /// Damping ratio of mode 2, dimensionless.
         zeta_2: ["1", "1", 1.0],
+        /// Inertial coupling of mode 1 with the pitch rate, (ft*slug)^0.5.
         psi_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Inertial coupling of mode 2 with the pitch rate, (ft*slug)^0.5.
         psi_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
         spherical_earth: ["1", "1", 1.0],
+        /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
         t_phi_alpha_3: ["lb/ft/rad^3", "N/m/rad^3", 14.593902937206364],
+        /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
         t_phi_alpha_2: ["lb/ft/rad^2", "N/m/rad^2", 14.593902937206364],
+        /// Coefficient of phi*alpha in T, lb/ft/rad.
         t_phi_alpha: ["lb/ft/rad", "N/m/rad", 14.593902937206364],
+        /// Coefficient of phi in T, lb/ft.
         t_phi: ["lb/ft", "N/m", 14.593902937206364],
+        /// Coefficient of alpha^3 in T, lb/ft/rad^3.
         t_alpha_3: ["lb/ft/rad^3", "N/m/rad^3", 14.593902937206364],
+        /// Coefficient of alpha^2 in T, lb/ft/rad^2.
         t_alpha_2: ["lb/ft/rad^2", "N/m/rad^2", 14.593902937206364],
+        /// Coefficient of alpha in T, lb/ft/rad.
         t_alpha: ["lb/ft/rad", "N/m/rad", 14.593902937206364],
+        /// Constant part of T, lb/ft.
         t_0: ["lb/ft", "N/m", 14.593902937206364],
+        /// Coefficient of alpha in C_L, 1/rad.
         c_l_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_e in C_L, 1/rad.
         c_l_delta_e: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_L, dimensionless.
         c_l_0: ["1", "1", 1.0],
+        /// Coefficient of alpha^2 in C_D, 1/rad^2.
         c_d_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_D, 1/rad.
         c_d_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
         c_d_delta_e_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of delta_e in C_D, 1/rad.
         c_d_delta_e: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_D, dimensionless.
         c_d_0: ["1", "1", 1.0],
+        /// Coefficient of alpha^2 in C_M, 1/rad^2.
         c_m_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_M, 1/rad.
         c_m_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_e in C_M, 1/rad.
         c_m_delta_e: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_M, dimensionless.
         c_m_0: ["1", "1", 1.0],
+        /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
         n_1_alpha_2: ["(ft*slug)^0.5/s^2/rad^2", "(m*kg)^0.5/s^2/rad^2", 2.1090807512422325],
+        /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
         n_1_alpha: ["(ft*slug)^0.5/s^2/rad", "(m*kg)^0.5/s^2/rad", 2.1090807512422325],
+        /// Constant part of N_1, (ft*slug)^0.5/s^2.
         n_1_0: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
         n_2_alpha_2: ["(ft*slug)^0.5/s^2/rad^2", "(m*kg)^0.5/s^2/rad^2", 2.1090807512422325],
+        /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
         n_2_alpha: ["(ft*slug)^0.5/s^2/rad", "(m*kg)^0.5/s^2/rad", 2.1090807512422325],
+        /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
         n_2_delta_e: ["(ft*slug)^0.5/s^2/rad", "(m*kg)^0.5/s^2/rad", 2.1090807512422325],
+        /// Constant part of N_2, (ft*slug)^0.5/s^2.
         n_2_0: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
     }
 }

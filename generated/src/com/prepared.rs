@@ -6,306 +6,64 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
-        /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
-        pub t_phi_alpha_3: R,
-        /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
-        pub t_phi_alpha_2: R,
-        /// Coefficient of phi*alpha in T, lb/ft/rad.
-        pub t_phi_alpha: R,
-        /// Coefficient of phi in T, lb/ft.
-        pub t_phi: R,
-        /// Coefficient of alpha^3 in T, lb/ft/rad^3.
-        pub t_alpha_3: R,
-        /// Coefficient of alpha^2 in T, lb/ft/rad^2.
-        pub t_alpha_2: R,
-        /// Coefficient of alpha in T, lb/ft/rad.
-        pub t_alpha: R,
-        /// Constant part of T, lb/ft.
-        pub t_0: R,
-        /// Air density at the reference altitude, slug/ft^3.
-        pub rho_0: R,
-        /// Reference altitude of the air density, ft.
-        pub h_0: R,
-        /// `1 / h_s`.
-        pub inv_h_s: R,
-        /// Reference area, ft.
-        pub s: R,
-        /// Coefficient of alpha^2 in C_D, 1/rad^2.
-        pub c_d_alpha_2: R,
-        /// Coefficient of alpha in C_D, 1/rad.
-        pub c_d_alpha: R,
-        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-        pub c_d_delta_e_2: R,
-        /// Coefficient of delta_e in C_D, 1/rad.
-        pub c_d_delta_e: R,
-        /// Constant part of C_D, dimensionless.
-        pub c_d_0: R,
-        /// `1 / m`.
-        pub inv_m: R,
-        /// Acceleration of gravity at sea level, ft/s^2.
-        pub g: R,
         /// Curvature of the Earth, 0 where it is flat, 1/ft.
-        pub earth_curvature: R,
-        /// `R::HALF * s * inv_m`.
-        pub half_s_over_m: R,
-        /// Coefficient of alpha in C_L, 1/rad.
-        pub c_l_alpha: R,
-        /// Coefficient of delta_e in C_L, 1/rad.
-        pub c_l_delta_e: R,
-        /// Constant part of C_L, dimensionless.
-        pub c_l_0: R,
-        /// Thrust-to-moment coupling arm, ft.
-        pub z_t: R,
-        /// Mean aerodynamic chord, ft.
-        pub c_bar: R,
-        /// Coefficient of alpha^2 in C_M, 1/rad^2.
-        pub c_m_alpha_2: R,
-        /// Coefficient of alpha in C_M, 1/rad.
-        pub c_m_alpha: R,
-        /// Coefficient of delta_e in C_M, 1/rad.
-        pub c_m_delta_e: R,
-        /// Constant part of C_M, dimensionless.
-        pub c_m_0: R,
-        /// Inertial coupling of mode 1 with the pitch rate, (ft*slug)^0.5.
-        pub psi_1: R,
-        /// Coefficient of alpha^2 in N_1, (ft*slug)^0.5/s^2/rad^2.
-        pub n_1_alpha_2: R,
-        /// Coefficient of alpha in N_1, (ft*slug)^0.5/s^2/rad.
-        pub n_1_alpha: R,
-        /// Constant part of N_1, (ft*slug)^0.5/s^2.
-        pub n_1_0: R,
+        earth_curvature,
         /// Damping of mode 1, rad/s.
-        pub damping_1: R,
+        damping_1,
         /// Stiffness of mode 1, rad^2/s^2.
-        pub stiffness_1: R,
-        /// Inertial coupling of mode 2 with the pitch rate, (ft*slug)^0.5.
-        pub psi_2: R,
-        /// Coefficient of alpha^2 in N_2, (ft*slug)^0.5/s^2/rad^2.
-        pub n_2_alpha_2: R,
-        /// Coefficient of alpha in N_2, (ft*slug)^0.5/s^2/rad.
-        pub n_2_alpha: R,
-        /// Coefficient of delta_e in N_2, (ft*slug)^0.5/s^2/rad.
-        pub n_2_delta_e: R,
-        /// Constant part of N_2, (ft*slug)^0.5/s^2.
-        pub n_2_0: R,
+        stiffness_1,
         /// Damping of mode 2, rad/s.
-        pub damping_2: R,
+        damping_2,
         /// Stiffness of mode 2, rad^2/s^2.
-        pub stiffness_2: R,
-        /// `1 / effective_inertia`.
-        pub inv_effective_inertia: R,
-        /// `2 * g`.
-        pub two_g: R,
-        /// `3 * t_alpha_3`.
-        pub three_t_alpha_3: R,
-        /// `2 * t_alpha_2`.
-        pub two_t_alpha_2: R,
-        /// `3 * t_phi_alpha_3`.
-        pub three_t_phi_alpha_3: R,
-        /// `2 * t_phi_alpha_2`.
-        pub two_t_phi_alpha_2: R,
-        /// `2 * c_d_alpha_2`.
-        pub two_c_d_alpha_2: R,
-        /// Vehicle mass, slug/ft.
-        pub m: R,
-        /// `2 * c_m_alpha_2`.
-        pub two_c_m_alpha_2: R,
-        /// `2 * n_1_alpha_2`.
-        pub two_n_1_alpha_2: R,
-        /// `2 * n_2_alpha_2`.
-        pub two_n_2_alpha_2: R,
-        /// Derivative of pitch acceleration with respect to eta_1, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_eta_1: R,
-        /// Derivative of pitch acceleration with respect to eta_dot_1, rad/s/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_eta_dot_1: R,
-        /// Derivative of pitch acceleration with respect to eta_2, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_eta_2: R,
-        /// Derivative of pitch acceleration with respect to eta_dot_2, rad/s/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_eta_dot_2: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_1, 1/s^2.
-        pub d_eta_acceleration_1_d_eta_1: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_1,
-        /// 1/s.
-        pub d_eta_acceleration_1_d_eta_dot_1: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_2, 1/s^2.
-        pub d_eta_acceleration_1_d_eta_2: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to eta_dot_2,
-        /// 1/s.
-        pub d_eta_acceleration_1_d_eta_dot_2: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_1, 1/s^2.
-        pub d_eta_acceleration_2_d_eta_1: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_1,
-        /// 1/s.
-        pub d_eta_acceleration_2_d_eta_dot_1: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_2, 1/s^2.
-        pub d_eta_acceleration_2_d_eta_2: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to eta_dot_2,
-        /// 1/s.
-        pub d_eta_acceleration_2_d_eta_dot_2: R,
-        /// `2 * c_d_delta_e_2`.
-        pub two_c_d_delta_e_2: R,
-        /// `z_t * inv_effective_inertia`.
-        pub z_t_over_effective_inertia: R,
-        /// `c_bar * c_m_delta_e`.
-        pub c_bar_c_m_delta_e: R,
-        /// `psi_2 * n_2_delta_e`.
-        pub psi_2_n_2_delta_e: R,
-        /// `inv_m * inv_m`.
-        pub inv_m_2: R,
-        /// `R::from_f64(-0.5) * s * inv_m`.
-        pub minus_half_s_over_m: R,
-        /// `inv_h_s * inv_h_s`.
-        pub inv_h_s_2: R,
-        /// `2 * g * earth_curvature * inv_r_e`.
-        pub two_g_earth_curvature_over_r_e: R,
-        /// `R::from_f64(-2.0) * g * inv_r_e`.
-        pub minus_two_g_over_r_e: R,
-        /// `R::HALF * inv_m_2`.
-        pub half_inv_m_2: R,
-        /// `R::HALF * inv_m`.
-        pub half_over_m: R,
-        /// `1 / r_e`.
-        pub inv_r_e: R,
-        /// `earth_curvature * earth_curvature`.
-        pub earth_curvature_2: R,
-        /// `R::from_f64(-0.5) * inv_m`.
-        pub minus_half_over_m: R,
-        /// `c_bar * inv_effective_inertia`.
-        pub c_bar_over_effective_inertia: R,
-        /// `R::HALF * c_bar * s * inv_effective_inertia`.
-        pub half_c_bar_s_over_effective_inertia: R,
-        /// `psi_1 * inv_effective_inertia`.
-        pub psi_1_over_effective_inertia: R,
-        /// `2 * zeta_1`.
-        pub two_zeta_1: R,
-        /// `2 * omega_1`.
-        pub two_omega_1: R,
-        /// `psi_2 * inv_effective_inertia`.
-        pub psi_2_over_effective_inertia: R,
-        /// `2 * zeta_2`.
-        pub two_zeta_2: R,
-        /// `2 * omega_2`.
-        pub two_omega_2: R,
-        /// `2 * psi_1 * inv_effective_inertia * omega_1`.
-        pub two_psi_1_omega_1_over_effective_inertia: R,
-        /// `2 * psi_2 * inv_effective_inertia * omega_2`.
-        pub two_psi_2_omega_2_over_effective_inertia: R,
-        /// `2 * psi_1`.
-        pub two_psi_1: R,
-        /// `2 * psi_2`.
-        pub two_psi_2: R,
-        /// `-psi_1 * inv_effective_inertia`.
-        pub minus_psi_1_over_effective_inertia: R,
-        /// `-psi_2 * inv_effective_inertia`.
-        pub minus_psi_2_over_effective_inertia: R,
-        /// `psi_1 * c_bar * inv_effective_inertia`.
-        pub psi_1_c_bar_over_effective_inertia: R,
-        /// `R::from_f64(-0.5) * psi_1 * c_bar * s * inv_effective_inertia`.
-        pub minus_half_psi_1_c_bar_s_over_effective_inertia: R,
-        /// Natural frequency of mode 1, rad/s.
-        pub omega_1: R,
-        /// `2 * psi_1_2 * inv_effective_inertia`.
-        pub two_psi_1_2_over_effective_inertia: R,
-        /// `R::from_f64(-2.0) * psi_1 * psi_2 * inv_effective_inertia * omega_2`.
-        pub minus_two_psi_1_psi_2_omega_2_over_effective_inertia: R,
-        /// `psi_1 * z_t * inv_effective_inertia`.
-        pub psi_1_z_t_over_effective_inertia: R,
-        /// `-psi_1 * z_t * inv_effective_inertia`.
-        pub minus_psi_1_z_t_over_effective_inertia: R,
-        /// `psi_1_2 * inv_effective_inertia`.
-        pub psi_1_2_over_effective_inertia: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 1 with respect to n_1_0,
-        /// dimensionless.
-        pub d_eta_acceleration_1_d_n_1_0: R,
-        /// `psi_1 * psi_2 * inv_effective_inertia`.
-        pub psi_1_psi_2_over_effective_inertia: R,
-        /// `psi_2 * c_bar * inv_effective_inertia`.
-        pub psi_2_c_bar_over_effective_inertia: R,
-        /// `R::from_f64(-0.5) * psi_2 * c_bar * s * inv_effective_inertia`.
-        pub minus_half_psi_2_c_bar_s_over_effective_inertia: R,
-        /// `R::from_f64(-2.0) * psi_2 * psi_1 * inv_effective_inertia * omega_1`.
-        pub minus_two_psi_2_psi_1_omega_1_over_effective_inertia: R,
-        /// Natural frequency of mode 2, rad/s.
-        pub omega_2: R,
-        /// `2 * psi_2_2 * inv_effective_inertia`.
-        pub two_psi_2_2_over_effective_inertia: R,
-        /// `psi_2 * z_t * inv_effective_inertia`.
-        pub psi_2_z_t_over_effective_inertia: R,
-        /// `-psi_2 * z_t * inv_effective_inertia`.
-        pub minus_psi_2_z_t_over_effective_inertia: R,
-        /// `psi_2_2 * inv_effective_inertia`.
-        pub psi_2_2_over_effective_inertia: R,
-        /// Derivative of acceleration of the flexible generalized coordinate of mode 2 with respect to n_2_0,
-        /// dimensionless.
-        pub d_eta_acceleration_2_d_n_2_0: R,
-        /// `2 * earth_curvature_2`.
-        pub two_earth_curvature_2: R,
-        /// `R::from_f64(6.0) * t_alpha_3`.
-        pub six_t_alpha_3: R,
-        /// `R::from_f64(6.0) * t_phi_alpha_3`.
-        pub six_t_phi_alpha_3: R,
-        /// `2 * m_2`.
-        pub two_m_2: R,
-        /// `c_bar * s`.
-        pub c_bar_s: R,
-        /// `2 * c_bar * c_m_alpha_2`.
-        pub two_c_bar_c_m_alpha_2: R,
-        /// `-2 * psi_1 * n_1_alpha_2 - 2 * psi_2 * n_2_alpha_2`.
-        pub minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2: R,
-        /// `psi_1 * psi_1`.
-        pub psi_1_2: R,
-        /// `psi_2 * psi_2`.
-        pub psi_2_2: R,
+        stiffness_2,
         /// Pitch moment of inertia that is left when the modes yield, slug*ft.
-        pub effective_inertia: R,
-        /// `m * m`.
-        pub m_2: R,
+        effective_inertia,
+        inv_h_s, inv_m, half_s_over_m, inv_effective_inertia, two_g, three_t_alpha_3, two_t_alpha_2,
+        three_t_phi_alpha_3, two_t_phi_alpha_2, two_c_d_alpha_2, two_c_m_alpha_2, two_n_1_alpha_2, two_n_2_alpha_2,
+        d_pitch_acceleration_d_eta_1, d_pitch_acceleration_d_eta_dot_1, d_pitch_acceleration_d_eta_2,
+        d_pitch_acceleration_d_eta_dot_2, d_eta_acceleration_1_d_eta_1, d_eta_acceleration_1_d_eta_dot_1,
+        d_eta_acceleration_1_d_eta_2, d_eta_acceleration_1_d_eta_dot_2, d_eta_acceleration_2_d_eta_1,
+        d_eta_acceleration_2_d_eta_dot_1, d_eta_acceleration_2_d_eta_2, d_eta_acceleration_2_d_eta_dot_2,
+        two_c_d_delta_e_2, z_t_over_effective_inertia, c_bar_c_m_delta_e, psi_2_n_2_delta_e, inv_m_2,
+        minus_half_s_over_m, inv_h_s_2, two_g_earth_curvature_over_r_e, minus_two_g_over_r_e, half_inv_m_2, half_over_m,
+        inv_r_e, earth_curvature_2, minus_half_over_m, c_bar_over_effective_inertia,
+        half_c_bar_s_over_effective_inertia, psi_1_over_effective_inertia, two_zeta_1, two_omega_1,
+        psi_2_over_effective_inertia, two_zeta_2, two_omega_2, two_psi_1_omega_1_over_effective_inertia,
+        two_psi_2_omega_2_over_effective_inertia, two_psi_1, two_psi_2, minus_psi_1_over_effective_inertia,
+        minus_psi_2_over_effective_inertia, psi_1_c_bar_over_effective_inertia,
+        minus_half_psi_1_c_bar_s_over_effective_inertia, two_psi_1_2_over_effective_inertia,
+        minus_two_psi_1_psi_2_omega_2_over_effective_inertia, psi_1_z_t_over_effective_inertia,
+        minus_psi_1_z_t_over_effective_inertia, psi_1_2_over_effective_inertia, d_eta_acceleration_1_d_n_1_0,
+        psi_1_psi_2_over_effective_inertia, psi_2_c_bar_over_effective_inertia,
+        minus_half_psi_2_c_bar_s_over_effective_inertia, minus_two_psi_2_psi_1_omega_1_over_effective_inertia,
+        two_psi_2_2_over_effective_inertia, psi_2_z_t_over_effective_inertia, minus_psi_2_z_t_over_effective_inertia,
+        psi_2_2_over_effective_inertia, d_eta_acceleration_2_d_n_2_0, two_earth_curvature_2, six_t_alpha_3,
+        six_t_phi_alpha_3, two_m_2, c_bar_s, two_c_bar_c_m_alpha_2,
+        minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2, psi_1_2, psi_2_2, m_2,
+    }
+    from Parameters {
+        t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0,
+        rho_0, h_0,
+        s,
+        c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_0,
+        g,
+        c_l_alpha, c_l_delta_e, c_l_0,
+        z_t, c_bar,
+        c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_0,
+        psi_1,
+        n_1_alpha_2, n_1_alpha, n_1_0,
+        psi_2,
+        n_2_alpha_2, n_2_alpha, n_2_delta_e, n_2_0,
+        m,
+        omega_1, omega_2,
     }
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.t_phi_alpha_3 = p.t_phi_alpha_3;
-    c.t_phi_alpha_2 = p.t_phi_alpha_2;
-    c.t_phi_alpha = p.t_phi_alpha;
-    c.t_phi = p.t_phi;
-    c.t_alpha_3 = p.t_alpha_3;
-    c.t_alpha_2 = p.t_alpha_2;
-    c.t_alpha = p.t_alpha;
-    c.t_0 = p.t_0;
-    c.rho_0 = p.rho_0;
-    c.h_0 = p.h_0;
-    c.s = p.s;
-    c.c_d_alpha_2 = p.c_d_alpha_2;
-    c.c_d_alpha = p.c_d_alpha;
-    c.c_d_delta_e_2 = p.c_d_delta_e_2;
-    c.c_d_delta_e = p.c_d_delta_e;
-    c.c_d_0 = p.c_d_0;
-    c.g = p.g;
-    c.c_l_alpha = p.c_l_alpha;
-    c.c_l_delta_e = p.c_l_delta_e;
-    c.c_l_0 = p.c_l_0;
-    c.z_t = p.z_t;
-    c.c_bar = p.c_bar;
-    c.c_m_alpha_2 = p.c_m_alpha_2;
-    c.c_m_alpha = p.c_m_alpha;
-    c.c_m_delta_e = p.c_m_delta_e;
-    c.c_m_0 = p.c_m_0;
-    c.psi_1 = p.psi_1;
-    c.n_1_alpha_2 = p.n_1_alpha_2;
-    c.n_1_alpha = p.n_1_alpha;
-    c.n_1_0 = p.n_1_0;
-    c.psi_2 = p.psi_2;
-    c.n_2_alpha_2 = p.n_2_alpha_2;
-    c.n_2_alpha = p.n_2_alpha;
-    c.n_2_delta_e = p.n_2_delta_e;
-    c.n_2_0 = p.n_2_0;
-    c.m = p.m;
-    c.omega_1 = p.omega_1;
-    c.omega_2 = p.omega_2;
-
     // Gravity, (1)
     c.inv_r_e = p.r_e.recip();
     c.earth_curvature = p.spherical_earth * c.inv_r_e; // 1/ft
@@ -317,15 +75,12 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.stiffness_2 = p.omega_2 * p.omega_2; // rad^2/s^2
     c.psi_1_2 = p.psi_1 * p.psi_1;
     c.psi_2_2 = p.psi_2 * p.psi_2;
-    c.effective_inertia = p.i_yy
-        - c.psi_1_2
-        - c.psi_2_2; // slug*ft
+    c.effective_inertia = p.i_yy - c.psi_1_2 - c.psi_2_2; // slug*ft
 
     // Derivatives with respect to eta_1
     c.inv_effective_inertia = c.effective_inertia.recip();
     c.d_pitch_acceleration_d_eta_1 = p.psi_1 * c.inv_effective_inertia * c.stiffness_1; // rad/s^2/ft^0.5/slug^0.5
-    c.d_eta_acceleration_1_d_eta_1 = -(c.stiffness_1
-        + p.psi_1 * c.d_pitch_acceleration_d_eta_1); // 1/s^2
+    c.d_eta_acceleration_1_d_eta_1 = -(c.stiffness_1 + p.psi_1 * c.d_pitch_acceleration_d_eta_1); // 1/s^2
     c.d_eta_acceleration_2_d_eta_1 = -p.psi_2 * c.d_pitch_acceleration_d_eta_1; // 1/s^2
 
     // Derivatives with respect to eta_dot_1
@@ -337,18 +92,14 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Derivatives with respect to eta_2
     c.d_pitch_acceleration_d_eta_2 = p.psi_2 * c.inv_effective_inertia * c.stiffness_2; // rad/s^2/ft^0.5/slug^0.5
     c.d_eta_acceleration_1_d_eta_2 = -p.psi_1 * c.d_pitch_acceleration_d_eta_2; // 1/s^2
-    c.d_eta_acceleration_2_d_eta_2 = -(c.stiffness_2
-        + p.psi_2 * c.d_pitch_acceleration_d_eta_2); // 1/s^2
+    c.d_eta_acceleration_2_d_eta_2 = -(c.stiffness_2 + p.psi_2 * c.d_pitch_acceleration_d_eta_2); // 1/s^2
 
     // Derivatives with respect to eta_dot_2
     c.d_pitch_acceleration_d_eta_dot_2 = p.psi_2 * c.inv_effective_inertia * c.damping_2; // rad/s/ft^0.5/slug^0.5
     c.d_eta_acceleration_1_d_eta_dot_2 = -p.psi_1 * c.d_pitch_acceleration_d_eta_dot_2; // 1/s
     c.d_eta_acceleration_2_d_eta_dot_2 = -(c.damping_2
         + p.psi_2 * c.d_pitch_acceleration_d_eta_dot_2); // 1/s
-}
 
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Derivatives with respect to parameters
     c.psi_1_2_over_effective_inertia = c.psi_1_2 * c.inv_effective_inertia;
     c.d_eta_acceleration_1_d_n_1_0 = R::ONE + c.psi_1_2_over_effective_inertia;
@@ -366,6 +117,11 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_t_phi_alpha_2 = R::TWO * p.t_phi_alpha_2;
     c.two_c_d_alpha_2 = R::TWO * p.c_d_alpha_2;
     c.two_c_m_alpha_2 = R::TWO * p.c_m_alpha_2;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
     c.two_n_1_alpha_2 = R::TWO * p.n_1_alpha_2;
     c.two_n_2_alpha_2 = R::TWO * p.n_2_alpha_2;
     c.two_c_d_delta_e_2 = R::TWO * p.c_d_delta_e_2;
@@ -382,41 +138,36 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.earth_curvature_2 = c.earth_curvature * c.earth_curvature;
     c.minus_half_over_m = R::from_f64(-0.5) * c.inv_m;
     c.c_bar_over_effective_inertia = p.c_bar * c.inv_effective_inertia;
-    c.half_c_bar_s_over_effective_inertia = R::HALF * p.c_bar * p.s
-        * c.inv_effective_inertia;
+    c.half_c_bar_s_over_effective_inertia = R::HALF * p.c_bar * p.s * c.inv_effective_inertia;
     c.psi_1_over_effective_inertia = p.psi_1 * c.inv_effective_inertia;
     c.two_zeta_1 = R::TWO * p.zeta_1;
     c.two_omega_1 = R::TWO * p.omega_1;
     c.psi_2_over_effective_inertia = p.psi_2 * c.inv_effective_inertia;
     c.two_zeta_2 = R::TWO * p.zeta_2;
     c.two_omega_2 = R::TWO * p.omega_2;
-    c.two_psi_1_omega_1_over_effective_inertia = R::TWO * p.psi_1
-        * c.inv_effective_inertia * p.omega_1;
-    c.two_psi_2_omega_2_over_effective_inertia = R::TWO * p.psi_2
-        * c.inv_effective_inertia * p.omega_2;
+    c.two_psi_1_omega_1_over_effective_inertia = R::TWO * p.psi_1 * c.inv_effective_inertia * p.omega_1;
+    c.two_psi_2_omega_2_over_effective_inertia = R::TWO * p.psi_2 * c.inv_effective_inertia * p.omega_2;
     c.two_psi_1 = R::TWO * p.psi_1;
     c.two_psi_2 = R::TWO * p.psi_2;
     c.minus_psi_1_over_effective_inertia = -p.psi_1 * c.inv_effective_inertia;
     c.minus_psi_2_over_effective_inertia = -p.psi_2 * c.inv_effective_inertia;
     c.psi_1_c_bar_over_effective_inertia = p.psi_1 * p.c_bar * c.inv_effective_inertia;
-    c.minus_half_psi_1_c_bar_s_over_effective_inertia = R::from_f64(-0.5) * p.psi_1
-        * p.c_bar * p.s * c.inv_effective_inertia;
-    c.two_psi_1_2_over_effective_inertia = R::TWO * c.psi_1_2 * c.inv_effective_inertia;
-    c.minus_two_psi_1_psi_2_omega_2_over_effective_inertia = R::from_f64(-2.0) * p.psi_1
-        * p.psi_2 * c.inv_effective_inertia * p.omega_2;
-    c.psi_1_z_t_over_effective_inertia = p.psi_1 * p.z_t * c.inv_effective_inertia;
-    c.minus_psi_1_z_t_over_effective_inertia = -p.psi_1 * p.z_t
+    c.minus_half_psi_1_c_bar_s_over_effective_inertia = R::from_f64(-0.5) * p.psi_1 * p.c_bar * p.s
         * c.inv_effective_inertia;
+    c.two_psi_1_2_over_effective_inertia = R::TWO * c.psi_1_2 * c.inv_effective_inertia;
+    c.minus_two_psi_1_psi_2_omega_2_over_effective_inertia = R::from_f64(-2.0) * p.psi_1 * p.psi_2
+        * c.inv_effective_inertia * p.omega_2;
+    c.psi_1_z_t_over_effective_inertia = p.psi_1 * p.z_t * c.inv_effective_inertia;
+    c.minus_psi_1_z_t_over_effective_inertia = -p.psi_1 * p.z_t * c.inv_effective_inertia;
     c.psi_1_psi_2_over_effective_inertia = p.psi_1 * p.psi_2 * c.inv_effective_inertia;
     c.psi_2_c_bar_over_effective_inertia = p.psi_2 * p.c_bar * c.inv_effective_inertia;
-    c.minus_half_psi_2_c_bar_s_over_effective_inertia = R::from_f64(-0.5) * p.psi_2
-        * p.c_bar * p.s * c.inv_effective_inertia;
-    c.minus_two_psi_2_psi_1_omega_1_over_effective_inertia = R::from_f64(-2.0) * p.psi_2
-        * p.psi_1 * c.inv_effective_inertia * p.omega_1;
+    c.minus_half_psi_2_c_bar_s_over_effective_inertia = R::from_f64(-0.5) * p.psi_2 * p.c_bar * p.s
+        * c.inv_effective_inertia;
+    c.minus_two_psi_2_psi_1_omega_1_over_effective_inertia = R::from_f64(-2.0) * p.psi_2 * p.psi_1
+        * c.inv_effective_inertia * p.omega_1;
     c.two_psi_2_2_over_effective_inertia = R::TWO * c.psi_2_2 * c.inv_effective_inertia;
     c.psi_2_z_t_over_effective_inertia = p.psi_2 * p.z_t * c.inv_effective_inertia;
-    c.minus_psi_2_z_t_over_effective_inertia = -p.psi_2 * p.z_t
-        * c.inv_effective_inertia;
+    c.minus_psi_2_z_t_over_effective_inertia = -p.psi_2 * p.z_t * c.inv_effective_inertia;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
     c.six_t_alpha_3 = R::from_f64(6.0) * p.t_alpha_3;
     c.six_t_phi_alpha_3 = R::from_f64(6.0) * p.t_phi_alpha_3;
@@ -424,15 +175,15 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_m_2 = R::TWO * c.m_2;
     c.c_bar_s = p.c_bar * p.s;
     c.two_c_bar_c_m_alpha_2 = R::TWO * p.c_bar * p.c_m_alpha_2;
-    c.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2 = -R::TWO * p.psi_1
-        * p.n_1_alpha_2 - R::TWO * p.psi_2 * p.n_2_alpha_2;
+    c.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2 = -R::TWO * p.psi_1 * p.n_1_alpha_2
+        - R::TWO * p.psi_2 * p.n_2_alpha_2;
 }
 
 /// Computes everything that depends on parameters alone.
 ///
 /// 134 operations: 9 additions, 121 multiplications, 4 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
+    let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);
     prepare_part_2(&mut c, p);
     c

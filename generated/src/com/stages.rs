@@ -6,88 +6,74 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Quantities of the drift that other functions need.
+    /// Quantities of the drift that other functions need. A field without a description is what its name says:
+    /// its formula and unit stand in [`intermediates`].
     pub struct Intermediates<R> {
         /// Air density over its reference, dimensionless.
-        pub density_ratio: R,
+        density_ratio,
         /// Air density, slug/ft^3.
-        pub density: R,
-        /// `x.velocity * x.velocity`.
-        pub velocity_2: R,
+        density,
         /// Dynamic pressure, lb/ft^2.
-        pub dynamic_pressure: R,
+        dynamic_pressure,
         /// Dynamic pressure times reference area, lb/ft.
-        pub reference_force: R,
+        reference_force,
         /// Sin of the angle of attack, dimensionless.
-        pub sin_alpha: R,
+        sin_alpha,
         /// Cos of the angle of attack, dimensionless.
-        pub cos_alpha: R,
+        cos_alpha,
         /// Sin of the flight-path angle, dimensionless.
-        pub sin_gamma: R,
+        sin_gamma,
         /// Cos of the flight-path angle, dimensionless.
-        pub cos_gamma: R,
+        cos_gamma,
         /// Radius of the Earth over the distance to its centre, dimensionless.
-        pub radius_ratio: R,
-        /// `i.radius_ratio * i.radius_ratio`.
-        pub radius_ratio_2: R,
+        radius_ratio,
         /// Acceleration of gravity at altitude, ft/s^2.
-        pub gravity: R,
-        /// `1 / x.velocity`.
-        pub inv_velocity: R,
+        gravity,
         /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-        pub gravity_turn: R,
+        gravity_turn,
         /// Reciprocal of mass times velocity, s/slug.
-        pub inverse_momentum: R,
+        inverse_momentum,
         /// Turn rate per force coefficient across the flight path, 1/s.
-        pub turn_factor: R,
-        /// `x.alpha * x.alpha`.
-        pub alpha_2: R,
-        /// `x.alpha * i.alpha_2`.
-        pub alpha_3: R,
+        turn_factor,
         /// Slope of the thrust in the fuel equivalence ratio, lb/ft.
-        pub thrust_phi: R,
+        thrust_phi,
         /// Thrust, lb/ft.
-        pub thrust: R,
+        thrust,
         /// Lift coefficient, dimensionless.
-        pub c_l: R,
-        /// `u.delta_e * u.delta_e`.
-        pub delta_e_2: R,
+        c_l,
         /// Drag coefficient, dimensionless.
-        pub c_d: R,
+        c_d,
         /// Pitching-moment coefficient, dimensionless.
-        pub c_m: R,
+        c_m,
         /// Drag, lb/ft.
-        pub drag: R,
+        drag,
         /// Pitching moment, lb.
-        pub pitching_moment: R,
+        pitching_moment,
         /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-        pub generalized_force_1: R,
+        generalized_force_1,
         /// Generalized force of mode 1 less damping and stiffness, (ft*slug)^0.5/s^2.
-        pub modal_load_1: R,
+        modal_load_1,
         /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-        pub generalized_force_2: R,
+        generalized_force_2,
         /// Generalized force of mode 2 less damping and stiffness, (ft*slug)^0.5/s^2.
-        pub modal_load_2: R,
+        modal_load_2,
         /// Pitch acceleration, rad/s^2.
-        pub pitch_acceleration: R,
+        pitch_acceleration,
         /// Force along the flight path, lb/ft.
-        pub path_force: R,
+        path_force,
         /// Rate of the velocity, ft/s^2.
-        pub velocity_rate: R,
+        velocity_rate,
         /// Rate of the altitude, ft/s.
-        pub altitude_rate: R,
+        altitude_rate,
         /// Rate of the flight-path angle, rad/s.
-        pub gamma_rate: R,
+        gamma_rate,
+        velocity_2, radius_ratio_2, inv_velocity, alpha_2, alpha_3, delta_e_2,
     }
 }
 
 /// Computes [`Intermediates`].
 #[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
+pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
 
     // Air, (2)
@@ -106,8 +92,7 @@ pub fn intermediates<R: Real>(
     i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
     i.gravity = p.g * i.radius_ratio_2; // ft/s^2
     i.inv_velocity = x.velocity.recip();
-    i.gravity_turn = i.gravity * i.inv_velocity
-        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
+    i.gravity_turn = i.gravity * i.inv_velocity - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
     i.inverse_momentum = p.inv_m * i.inv_velocity; // s/slug
@@ -125,33 +110,24 @@ pub fn intermediates<R: Real>(
         + p.t_alpha_3 * i.alpha_3
         + p.t_alpha_2 * i.alpha_2
         + p.t_alpha * x.alpha; // lb/ft
-    i.c_l = p.c_l_0
-        + p.c_l_alpha * x.alpha
-        + p.c_l_delta_e * u.delta_e;
+    i.c_l = p.c_l_0 + p.c_l_alpha * x.alpha + p.c_l_delta_e * u.delta_e;
     i.delta_e_2 = u.delta_e * u.delta_e;
     i.c_d = p.c_d_0
         + p.c_d_alpha_2 * i.alpha_2
         + p.c_d_alpha * x.alpha
         + p.c_d_delta_e_2 * i.delta_e_2
         + p.c_d_delta_e * u.delta_e;
-    i.c_m = p.c_m_0
-        + p.c_m_alpha_2 * i.alpha_2
-        + p.c_m_alpha * x.alpha
-        + p.c_m_delta_e * u.delta_e;
+    i.c_m = p.c_m_0 + p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_delta_e * u.delta_e;
 
     // Forces and moment, (2)
     i.drag = i.reference_force * i.c_d; // lb/ft
     i.pitching_moment = p.z_t * i.thrust + i.reference_force * p.c_bar * i.c_m; // lb
 
     // Curve fits, (2)
-    i.generalized_force_1 = p.n_1_0
-        + p.n_1_alpha_2 * i.alpha_2
-        + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
+    i.generalized_force_1 = p.n_1_0 + p.n_1_alpha_2 * i.alpha_2 + p.n_1_alpha * x.alpha; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
-    i.modal_load_1 = i.generalized_force_1
-        - p.damping_1 * x.eta_dot_1
-        - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
+    i.modal_load_1 = i.generalized_force_1 - p.damping_1 * x.eta_dot_1 - p.stiffness_1 * x.eta_1; // (ft*slug)^0.5/s^2
 
     // Curve fits, (2)
     i.generalized_force_2 = p.n_2_0
@@ -160,13 +136,11 @@ pub fn intermediates<R: Real>(
         + p.n_2_delta_e * u.delta_e; // (ft*slug)^0.5/s^2
 
     // Flexible modes, (1)
-    i.modal_load_2 = i.generalized_force_2
-        - p.damping_2 * x.eta_dot_2
-        - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
+    i.modal_load_2 = i.generalized_force_2 - p.damping_2 * x.eta_dot_2 - p.stiffness_2 * x.eta_2; // (ft*slug)^0.5/s^2
 
     // Motion, (1)
-    i.pitch_acceleration = (i.pitching_moment - p.psi_1 * i.modal_load_1
-        - p.psi_2 * i.modal_load_2) * p.inv_effective_inertia; // rad/s^2
+    i.pitch_acceleration = (i.pitching_moment - p.psi_1 * i.modal_load_1 - p.psi_2 * i.modal_load_2)
+        * p.inv_effective_inertia; // rad/s^2
     i.path_force = i.thrust * i.cos_alpha - i.drag; // lb/ft
     let force_turn = i.turn_factor * i.c_l + i.thrust * i.sin_alpha * i.inverse_momentum; // rad/s
     i.velocity_rate = i.path_force * p.inv_m - i.gravity * i.sin_gamma; // ft/s^2
@@ -176,63 +150,20 @@ pub fn intermediates<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the Jacobians that other functions need.
+    /// Quantities of the Jacobians that other functions need. A field without a description is what its name
+    /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-        pub d_dynamic_pressure_d_velocity: R,
-        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-        pub d_reference_force_d_velocity: R,
-        /// `i.inv_velocity * i.inv_velocity`.
-        pub inv_velocity_2: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// velocity, 1/ft.
-        pub d_gravity_turn_d_velocity: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-        pub d_turn_factor_d_velocity: R,
-        /// `i.inverse_momentum * i.inverse_momentum`.
-        pub inverse_momentum_2: R,
-        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-        pub d_radius_ratio_d_altitude: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-        pub d_gravity_d_altitude: R,
-        /// Derivative of air density with respect to altitude, slug/ft^4.
-        pub d_density_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-        pub d_reference_force_d_altitude: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// altitude, 1/s/ft.
-        pub d_gravity_turn_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-        pub d_turn_factor_d_altitude: R,
-        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-        pub d_altitude_rate_d_gamma: R,
-        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-        pub d_cos_gamma_d_gamma: R,
-        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-        pub d_cos_alpha_d_alpha: R,
-        /// Derivative of thrust with respect to alpha, lb/ft/rad.
-        pub d_thrust_d_alpha: R,
-        /// Derivative of drag coefficient with respect to alpha, 1/rad.
-        pub d_c_d_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
-        pub d_c_m_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to phi, ft/s^2.
-        pub d_velocity_rate_d_phi: R,
-        /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
-        pub d_force_turn_d_phi: R,
-        /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
-        pub d_velocity_rate_d_delta_e: R,
+        d_dynamic_pressure_d_velocity, d_reference_force_d_velocity, inv_velocity_2, d_gravity_turn_d_velocity,
+        d_turn_factor_d_velocity, inverse_momentum_2, d_radius_ratio_d_altitude, d_gravity_d_altitude,
+        d_density_d_altitude, d_reference_force_d_altitude, d_gravity_turn_d_altitude, d_turn_factor_d_altitude,
+        d_altitude_rate_d_gamma, d_cos_gamma_d_gamma, d_cos_alpha_d_alpha, d_thrust_d_alpha, d_c_d_d_alpha,
+        d_c_m_d_alpha, d_velocity_rate_d_phi, d_force_turn_d_phi, d_velocity_rate_d_delta_e,
     }
 }
 
 /// Computes [`Slopes`].
 #[inline(always)]
-pub fn slopes<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Slopes<R> {
+pub fn slopes<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Slopes<R> {
     let mut s = Slopes::splat(R::ZERO);
 
     // Derivatives with respect to velocity
@@ -286,28 +217,20 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
+    /// a description is what its name says: its formula and unit stand in [`sensitivities`].
     pub struct Sensitivities<R> {
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
-        pub slope_of_radius_ratio_in_earth_curvature: R,
-        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
-        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
-        /// `psi_1_psi_2_over_effective_inertia * i.alpha_2`.
-        pub psi_1_psi_2_over_effective_inertia_alpha_2: R,
-        /// `psi_1_psi_2_over_effective_inertia * x.alpha`.
-        pub psi_1_psi_2_over_effective_inertia_alpha: R,
+        slope_of_radius_ratio_in_earth_curvature,
+        two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity, psi_1_psi_2_over_effective_inertia_alpha_2,
+        psi_1_psi_2_over_effective_inertia_alpha,
     }
 }
 
 /// Computes [`Sensitivities`].
 #[inline(always)]
-pub fn sensitivities<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Sensitivities<R> {
+pub fn sensitivities<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
     // Derivatives with respect to parameters
@@ -316,9 +239,7 @@ pub fn sensitivities<R: Real>(
     // Further values
     q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
         * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
-    q.psi_1_psi_2_over_effective_inertia_alpha_2 = p.psi_1_psi_2_over_effective_inertia
-        * i.alpha_2;
-    q.psi_1_psi_2_over_effective_inertia_alpha = p.psi_1_psi_2_over_effective_inertia
-        * x.alpha;
+    q.psi_1_psi_2_over_effective_inertia_alpha_2 = p.psi_1_psi_2_over_effective_inertia * i.alpha_2;
+    q.psi_1_psi_2_over_effective_inertia_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
     q
 }

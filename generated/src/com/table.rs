@@ -16,39 +16,26 @@ pub const TABLE: Table = Table {
         Entry::parameter("vehicle", "S", "reference area"),
         Entry::parameter("vehicle", "c_bar", "mean aerodynamic chord"),
         Entry::parameter("vehicle", "z_T", "thrust-to-moment coupling arm"),
-        Entry::parameter(
-            "environment",
-            "rho_0",
-            "air density at the reference altitude",
-        ),
+        Entry::parameter("environment", "rho_0", "air density at the reference altitude"),
         Entry::parameter("environment", "h_0", "reference altitude of the air density"),
         Entry::parameter("environment", "h_s", "scale height of the air density"),
         Entry::parameter("environment", "g", "acceleration of gravity at sea level"),
         Entry::parameter("environment", "R_E", "radius of the Earth"),
-        Entry::parameter("modes", "omega_1", "natural frequency of mode 1")
-            .only_for(&["com"]),
-        Entry::parameter("modes", "omega_2", "natural frequency of mode 2")
-            .only_for(&["com"]),
-        Entry::parameter("modes", "zeta_1", "damping ratio of mode 1")
-            .only_for(&["com"]),
-        Entry::parameter("modes", "zeta_2", "damping ratio of mode 2")
-            .only_for(&["com"]),
+        Entry::parameter("modes", "omega_1", "natural frequency of mode 1").only_for(&["com"]),
+        Entry::parameter("modes", "omega_2", "natural frequency of mode 2").only_for(&["com"]),
+        Entry::parameter("modes", "zeta_1", "damping ratio of mode 1").only_for(&["com"]),
+        Entry::parameter("modes", "zeta_2", "damping ratio of mode 2").only_for(&["com"]),
         Entry::parameter(
                 "modes",
                 "psi_1",
                 "inertial coupling of mode 1 with the pitch rate",
-            )
-            .only_for(&["com"]),
+            ).only_for(&["com"]),
         Entry::parameter(
                 "modes",
                 "psi_2",
                 "inertial coupling of mode 2 with the pitch rate",
-            )
-            .only_for(&["com"]),
-        Entry::switch(
-            "earth",
-            "share of the Earth's curvature in the motion: 1 spherical, 0 flat",
-        ),
+            ).only_for(&["com"]),
+        Entry::switch("earth", "share of the Earth's curvature in the motion: 1 spherical, 0 flat"),
         Entry::coefficient("T", "phi*alpha^3", "coefficient of phi*alpha^3 in T"),
         Entry::coefficient("T", "phi*alpha^2", "coefficient of phi*alpha^2 in T"),
         Entry::coefficient("T", "phi*alpha", "coefficient of phi*alpha in T"),
@@ -69,17 +56,12 @@ pub const TABLE: Table = Table {
         Entry::coefficient("C_M", "alpha", "coefficient of alpha in C_M"),
         Entry::coefficient("C_M", "delta_e", "coefficient of delta_e in C_M"),
         Entry::coefficient("C_M", "1", "constant part of C_M"),
-        Entry::coefficient("N_1", "alpha^2", "coefficient of alpha^2 in N_1")
-            .only_for(&["com"]),
-        Entry::coefficient("N_1", "alpha", "coefficient of alpha in N_1")
-            .only_for(&["com"]),
+        Entry::coefficient("N_1", "alpha^2", "coefficient of alpha^2 in N_1").only_for(&["com"]),
+        Entry::coefficient("N_1", "alpha", "coefficient of alpha in N_1").only_for(&["com"]),
         Entry::coefficient("N_1", "1", "constant part of N_1").only_for(&["com"]),
-        Entry::coefficient("N_2", "alpha^2", "coefficient of alpha^2 in N_2")
-            .only_for(&["com"]),
-        Entry::coefficient("N_2", "alpha", "coefficient of alpha in N_2")
-            .only_for(&["com"]),
-        Entry::coefficient("N_2", "delta_e", "coefficient of delta_e in N_2")
-            .only_for(&["com"]),
+        Entry::coefficient("N_2", "alpha^2", "coefficient of alpha^2 in N_2").only_for(&["com"]),
+        Entry::coefficient("N_2", "alpha", "coefficient of alpha in N_2").only_for(&["com"]),
+        Entry::coefficient("N_2", "delta_e", "coefficient of delta_e in N_2").only_for(&["com"]),
         Entry::coefficient("N_2", "1", "constant part of N_2").only_for(&["com"]),
     ],
     choices: &[
@@ -107,37 +89,25 @@ pub const TABLE: Table = Table {
         Interval::new("gamma", "rad", VALIDITY.gamma, &["gamma"]),
         Interval::new("alpha", "rad", VALIDITY.alpha, &["alpha"]),
         Interval::new("pitch_rate", "rad/s", VALIDITY.pitch_rate, &["pitch_rate"]),
-        Interval::new("eta", "(ft*slug)^0.5", VALIDITY.eta, &["eta_1", "eta_2"])
-            .only_for(&["com"]),
+        Interval::new("eta", "(ft*slug)^0.5", VALIDITY.eta, &["eta_1", "eta_2"]).only_for(&["com"]),
         Interval::new(
                 "eta_dot",
                 "(ft*slug)^0.5/s",
                 VALIDITY.eta_dot,
                 &["eta_dot_1", "eta_dot_2"],
-            )
-            .only_for(&["com"]),
+            ).only_for(&["com"]),
         Interval::new("phi", "1", VALIDITY.phi, &["phi"]),
         Interval::new("delta_e", "rad", VALIDITY.delta_e, &["delta_e"]),
     ],
     rules: &[
-        Rule::new(
-            "positive",
-            "`m` (vehicle mass) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["m"])],
-        ),
+        Rule::new("positive", "`m` (vehicle mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),
         Rule::new(
             "positive",
             "`I_yy` (pitch moment of inertia) must be positive",
             Sign::Positive,
             &[Term::new(1.0, &["i_yy"])],
         ),
-        Rule::new(
-            "positive",
-            "`S` (reference area) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["s"])],
-        ),
+        Rule::new("positive", "`S` (reference area) must be positive", Sign::Positive, &[Term::new(1.0, &["s"])]),
         Rule::new(
             "positive",
             "`c_bar` (mean aerodynamic chord) must be positive",

@@ -7,12 +7,7 @@ use ahv_core::Real;
 
 /// [`drift`] where its stages are computed already.
 #[inline(always)]
-pub fn drift_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    _p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> State<R> {
+pub fn drift_from<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>, i: &Intermediates<R>) -> State<R> {
     // Motion, (1)
     let alpha_rate = x.pitch_rate - i.gamma_rate; // rad/s
 

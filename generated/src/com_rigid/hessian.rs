@@ -2,91 +2,58 @@
 
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
-use super::{
-    Hessian, Input, Intermediates, Prepared, Slopes, State, intermediates, slopes,
-};
-
+use super::{Hessian, Input, Intermediates, Prepared, Slopes, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Hessian`].
-    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
-        velocity_by_velocity_velocity: velocity.velocity.velocity,
-        velocity_by_altitude_velocity: velocity.altitude.velocity,
-        velocity_by_altitude_altitude: velocity.altitude.altitude,
-        velocity_by_gamma_altitude: velocity.gamma.altitude,
-        velocity_by_gamma_gamma: velocity.gamma.gamma,
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        velocity_by_alpha_altitude: velocity.alpha.altitude,
-        velocity_by_alpha_alpha: velocity.alpha.alpha,
-        altitude_by_gamma_velocity: altitude.gamma.velocity,
-        altitude_by_gamma_gamma: altitude.gamma.gamma,
-        gamma_by_velocity_velocity: gamma.velocity.velocity,
-        gamma_by_altitude_velocity: gamma.altitude.velocity,
-        gamma_by_altitude_altitude: gamma.altitude.altitude,
-        gamma_by_gamma_velocity: gamma.gamma.velocity,
-        gamma_by_gamma_altitude: gamma.gamma.altitude,
-        gamma_by_gamma_gamma: gamma.gamma.gamma,
-        gamma_by_alpha_velocity: gamma.alpha.velocity,
-        gamma_by_alpha_altitude: gamma.alpha.altitude,
-        gamma_by_alpha_alpha: gamma.alpha.alpha,
-        alpha_by_velocity_velocity: alpha.velocity.velocity,
-        alpha_by_altitude_velocity: alpha.altitude.velocity,
-        alpha_by_altitude_altitude: alpha.altitude.altitude,
-        alpha_by_gamma_velocity: alpha.gamma.velocity,
-        alpha_by_gamma_altitude: alpha.gamma.altitude,
-        alpha_by_gamma_gamma: alpha.gamma.gamma,
-        alpha_by_alpha_velocity: alpha.alpha.velocity,
-        alpha_by_alpha_altitude: alpha.alpha.altitude,
-        alpha_by_alpha_alpha: alpha.alpha.alpha,
-        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
-        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
-        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
-        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
-        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
-        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
+    pub struct HessianEntries in hessian_entries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity {
+            velocity { velocity } altitude { velocity, altitude } gamma { altitude, gamma }
+            alpha { velocity, altitude, alpha }
+        }
+        altitude { gamma { velocity, gamma } }
+        gamma {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha }
+        }
+        alpha {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha }
+        }
+        pitch_rate { velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha } }
     }
 }
 
 /// Entries of [`hessian_values`]: derivatives by velocity, altitude.
 #[inline(always)]
 fn hessian_by_velocity_altitude<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to velocity
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
-    let d2_velocity_rate_d_velocity_d_velocity = -d2_drag_d_velocity_d_velocity
-        * p.inv_m; // 1/ft
+    hessian.velocity.velocity.velocity = -d2_drag_d_velocity_d_velocity * p.inv_m; // 1/ft
 
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_velocity_rate_d_velocity_d_altitude = -d2_drag_d_velocity_d_altitude
-        * p.inv_m; // 1/s/ft
+    hessian.velocity.altitude.velocity = -d2_drag_d_velocity_d_altitude * p.inv_m; // 1/s/ft
     let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     let density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     let d2_density_ratio_d_altitude_d_altitude = density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_density_d_altitude_d_altitude = p.rho_0 * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
-    let d2_velocity_rate_d_altitude_d_altitude = -(i.sin_gamma
-        * d2_gravity_d_altitude_d_altitude + d2_drag_d_altitude_d_altitude * p.inv_m); // 1/s^2/ft
+    hessian.velocity.altitude.altitude = -(i.sin_gamma * d2_gravity_d_altitude_d_altitude
+        + d2_drag_d_altitude_d_altitude * p.inv_m); // 1/s^2/ft
 
     // Derivatives with respect to velocity
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
@@ -94,84 +61,63 @@ fn hessian_by_velocity_altitude<R: Real>(
     let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
     let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
         * inverse_momentum_3; // rad*s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
+    hessian.gamma.velocity.velocity = d2_force_turn_d_velocity_d_velocity
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
 
     // Derivatives with respect to altitude
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    let d2_force_turn_d_velocity_d_altitude = i.c_l
-        * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
-    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
+    let d2_force_turn_d_velocity_d_altitude = i.c_l * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
+    hessian.gamma.altitude.velocity = d2_force_turn_d_velocity_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
+    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_force_turn_d_altitude_d_altitude = i.c_l
-        * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
+    let d2_force_turn_d_altitude_d_altitude = i.c_l * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+    hessian.gamma.altitude.altitude = d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to velocity
     let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_i_yy; // rad/ft^2
+    hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
 
     // Derivatives with respect to altitude
     let d2_pitching_moment_d_velocity_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
-        * p.inv_i_yy; // rad/s/ft^2
+    hessian.pitch_rate.altitude.velocity = d2_pitching_moment_d_velocity_d_altitude * p.inv_i_yy; // rad/s/ft^2
     let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
-    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
-        * p.inv_i_yy; // rad/s^2/ft^2
+    hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
 
-    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
-    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
-    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
-    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
-    hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
-    hessian.gamma_by_altitude_altitude = d2_gamma_rate_d_altitude_d_altitude;
-    hessian.alpha_by_altitude_velocity = -d2_gamma_rate_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
-    hessian.pitch_rate_by_altitude_velocity = d2_pitch_acceleration_d_velocity_d_altitude;
-    hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
+    hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
+    hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
+    hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
 
 /// Entries of [`hessian_values`]: derivatives by gamma, alpha.
 #[inline(always)]
 fn hessian_by_gamma_alpha<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to alpha
     let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
+    hessian.velocity.alpha.velocity = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
 
     // Derivatives with respect to alpha
     let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
-    let d2_velocity_rate_d_altitude_d_alpha = -d2_drag_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
+    hessian.velocity.alpha.altitude = -d2_drag_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
 
     // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_thrust_phi_d_alpha_d_alpha = p.six_t_phi_alpha_3 * x.alpha
-        + R::TWO * p.t_phi_alpha_2; // lb/ft/rad^2
+    let d2_thrust_phi_d_alpha_d_alpha = p.six_t_phi_alpha_3 * x.alpha + R::TWO * p.t_phi_alpha_2; // lb/ft/rad^2
     let d2_thrust_d_alpha_d_alpha = p.six_t_alpha_3 * x.alpha
         + R::TWO * p.t_alpha_2
         + u.phi * d2_thrust_phi_d_alpha_d_alpha; // lb/ft/rad^2
@@ -180,69 +126,48 @@ fn hessian_by_gamma_alpha<R: Real>(
         + i.thrust * d2_cos_alpha_d_alpha_d_alpha
         + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
+    hessian.velocity.alpha.alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to gamma
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
+    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * p.c_l_alpha
-        - s.inverse_momentum_2 * p.m
-            * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha); // 1/ft
+    hessian.gamma.alpha.velocity = s.d_turn_factor_d_velocity * p.c_l_alpha
+        - s.inverse_momentum_2 * p.m * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha); // 1/ft
 
     // Derivatives with respect to gamma
-    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude * p.c_l_alpha; // 1/s/ft
+    hessian.gamma.alpha.altitude = s.d_turn_factor_d_altitude * p.c_l_alpha; // 1/s/ft
 
     // Derivatives with respect to gamma
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to alpha
-    let d2_force_turn_d_alpha_d_alpha = i.inverse_momentum
+    hessian.gamma.alpha.alpha = i.inverse_momentum
         * (R::TWO * i.cos_alpha * s.d_thrust_d_alpha
             + i.sin_alpha * d2_thrust_d_alpha_d_alpha
             + i.thrust * s.d_cos_alpha_d_alpha); // 1/s/rad
     let d2_pitching_moment_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_bar
         * s.d_c_m_d_alpha; // lb*s/ft/rad
-    let d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy; // 1/s/ft
+    hessian.pitch_rate.alpha.velocity = d2_pitching_moment_d_velocity_d_alpha * p.inv_i_yy; // 1/s/ft
     let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
         * s.d_c_m_d_alpha; // lb/ft/rad
-    let d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
-        * p.inv_i_yy; // 1/s^2/ft
+    hessian.pitch_rate.alpha.altitude = d2_pitching_moment_d_altitude_d_alpha * p.inv_i_yy; // 1/s^2/ft
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + i.reference_force * p.two_c_bar_c_m_alpha_2; // lb/rad^2
-    let d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
-        * p.inv_i_yy; // 1/s^2/rad
+    hessian.pitch_rate.alpha.alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
 
-    hessian.velocity_by_gamma_altitude = d2_velocity_rate_d_altitude_d_gamma;
-    hessian.velocity_by_gamma_gamma = d2_velocity_rate_d_gamma_d_gamma;
-    hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = d2_gamma_rate_d_velocity_d_gamma;
-    hessian.gamma_by_gamma_altitude = d2_gamma_rate_d_altitude_d_gamma;
-    hessian.gamma_by_gamma_gamma = d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = -d2_gamma_rate_d_velocity_d_gamma;
-    hessian.alpha_by_gamma_altitude = -d2_gamma_rate_d_altitude_d_gamma;
-    hessian.alpha_by_gamma_gamma = -d2_gamma_rate_d_gamma_d_gamma;
-    hessian.velocity_by_alpha_velocity = d2_velocity_rate_d_velocity_d_alpha;
-    hessian.velocity_by_alpha_altitude = d2_velocity_rate_d_altitude_d_alpha;
-    hessian.velocity_by_alpha_alpha = d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma_by_alpha_velocity = d2_force_turn_d_velocity_d_alpha;
-    hessian.gamma_by_alpha_altitude = d2_force_turn_d_altitude_d_alpha;
-    hessian.gamma_by_alpha_alpha = d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -d2_force_turn_d_velocity_d_alpha;
-    hessian.alpha_by_alpha_altitude = -d2_force_turn_d_altitude_d_alpha;
-    hessian.alpha_by_alpha_alpha = -d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = d2_pitch_acceleration_d_velocity_d_alpha;
-    hessian.pitch_rate_by_alpha_altitude = d2_pitch_acceleration_d_altitude_d_alpha;
-    hessian.pitch_rate_by_alpha_alpha = d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.altitude.gamma.velocity = i.cos_gamma;
+    hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
+    hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
+    hessian.alpha.gamma.gamma = -hessian.gamma.gamma.gamma;
+    hessian.alpha.alpha.velocity = -hessian.gamma.alpha.velocity;
+    hessian.alpha.alpha.altitude = -hessian.gamma.alpha.altitude;
+    hessian.alpha.alpha.alpha = -hessian.gamma.alpha.alpha;
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
@@ -251,11 +176,7 @@ fn hessian_by_gamma_alpha<R: Real>(
 ///
 /// 203 operations: 46 additions, 152 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn hessian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> HessianEntries<R> {
+pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let mut hessian = HessianEntries::splat(R::ZERO);

@@ -3,135 +3,92 @@
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
 use super::{
-    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
-    drift_from, intermediates, slopes,
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian, drift_from, intermediates, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`StateJacobian`].
-    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
-        velocity_by_velocity: velocity.velocity,
-        velocity_by_altitude: velocity.altitude,
-        velocity_by_gamma: velocity.gamma,
-        velocity_by_alpha: velocity.alpha,
-        altitude_by_velocity: altitude.velocity,
-        altitude_by_gamma: altitude.gamma,
-        gamma_by_velocity: gamma.velocity,
-        gamma_by_altitude: gamma.altitude,
-        gamma_by_gamma: gamma.gamma,
-        gamma_by_alpha: gamma.alpha,
-        alpha_by_velocity: alpha.velocity,
-        alpha_by_altitude: alpha.altitude,
-        alpha_by_gamma: alpha.gamma,
-        alpha_by_alpha: alpha.alpha,
-        alpha_by_pitch_rate: alpha.pitch_rate,
-        pitch_rate_by_velocity: pitch_rate.velocity,
-        pitch_rate_by_altitude: pitch_rate.altitude,
-        pitch_rate_by_alpha: pitch_rate.alpha,
+    pub struct StateJacobianEntries in state_jacobian_entries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity { velocity, altitude, gamma, alpha }
+        altitude { velocity, gamma }
+        gamma { velocity, altitude, gamma, alpha }
+        alpha { velocity, altitude, gamma, alpha, pitch_rate }
+        pitch_rate { velocity, altitude, alpha }
     }
 }
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`InputJacobian`].
-    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
-        velocity_by_phi: velocity.phi,
-        velocity_by_delta_e: velocity.delta_e,
-        gamma_by_phi: gamma.phi,
-        gamma_by_delta_e: gamma.delta_e,
-        alpha_by_phi: alpha.phi,
-        alpha_by_delta_e: alpha.delta_e,
-        pitch_rate_by_phi: pitch_rate.phi,
-        pitch_rate_by_delta_e: pitch_rate.delta_e,
+    pub struct InputJacobianEntries in input_jacobian_entries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity { phi, delta_e }
+        gamma { phi, delta_e }
+        alpha { phi, delta_e }
+        pitch_rate { phi, delta_e }
     }
 }
 
 /// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
-    let d_velocity_rate_d_velocity = -d_drag_d_velocity * p.inv_m; // 1/s
+    state.velocity.velocity = -d_drag_d_velocity * p.inv_m; // 1/s
     let d_force_turn_d_velocity = i.c_l * s.d_turn_factor_d_velocity
         - i.thrust * i.sin_alpha * s.inverse_momentum_2 * p.m; // rad/ft
-    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
+    state.gamma.velocity = d_force_turn_d_velocity - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = i.c_m * p.c_bar * s.d_reference_force_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
 
     // Derivatives with respect to altitude
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = -(i.sin_gamma * s.d_gravity_d_altitude
-        + d_drag_d_altitude * p.inv_m); // 1/s^2
+    state.velocity.altitude = -(i.sin_gamma * s.d_gravity_d_altitude + d_drag_d_altitude * p.inv_m); // 1/s^2
     let d_force_turn_d_altitude = i.c_l * s.d_turn_factor_d_altitude; // rad/s/ft
-    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
+    state.gamma.altitude = d_force_turn_d_altitude - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
 
     // Derivatives with respect to gamma
-    let d_velocity_rate_d_gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
-    let d_gamma_rate_d_gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
+    state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
 
     // Derivatives with respect to alpha
     let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
     let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
         + i.cos_alpha * s.d_thrust_d_alpha
         - d_drag_d_alpha; // lb/ft/rad
-    let d_velocity_rate_d_alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
-    let d_force_turn_d_alpha = i.inverse_momentum
-        * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha)
-        + i.turn_factor * p.c_l_alpha; // 1/s
+    state.velocity.alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
+    state.gamma.alpha = i.inverse_momentum
+        * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha) + i.turn_factor * p.c_l_alpha; // 1/s
     let d_pitching_moment_d_alpha = p.z_t * s.d_thrust_d_alpha
         + i.reference_force * p.c_bar * s.d_c_m_d_alpha; // lb/rad
-    let d_pitch_acceleration_d_alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
+    state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to phi
-    let d_pitch_acceleration_d_phi = p.z_t_over_i_yy * i.thrust_phi; // rad/s^2
+    input.pitch_rate.phi = p.z_t_over_i_yy * i.thrust_phi; // rad/s^2
 
     // Derivatives with respect to delta_e
-    let d_alpha_rate_d_delta_e = -i.turn_factor * p.c_l_delta_e; // 1/s
+    input.alpha.delta_e = -i.turn_factor * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_delta_e; // lb/rad
-    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
-    // Result
-    let state = StateJacobianEntries {
-        velocity_by_velocity: d_velocity_rate_d_velocity,
-        velocity_by_altitude: d_velocity_rate_d_altitude,
-        velocity_by_gamma: d_velocity_rate_d_gamma,
-        velocity_by_alpha: d_velocity_rate_d_alpha,
-        altitude_by_velocity: i.sin_gamma,
-        altitude_by_gamma: s.d_altitude_rate_d_gamma,
-        gamma_by_velocity: d_gamma_rate_d_velocity,
-        gamma_by_altitude: d_gamma_rate_d_altitude,
-        gamma_by_gamma: d_gamma_rate_d_gamma,
-        gamma_by_alpha: d_force_turn_d_alpha,
-        alpha_by_velocity: -d_gamma_rate_d_velocity,
-        alpha_by_altitude: -d_gamma_rate_d_altitude,
-        alpha_by_gamma: -d_gamma_rate_d_gamma,
-        alpha_by_alpha: -d_force_turn_d_alpha,
-        alpha_by_pitch_rate: R::ONE,
-        pitch_rate_by_velocity: d_pitch_acceleration_d_velocity,
-        pitch_rate_by_altitude: d_pitch_acceleration_d_altitude,
-        pitch_rate_by_alpha: d_pitch_acceleration_d_alpha,
-    };
-    let input = InputJacobianEntries {
-        velocity_by_phi: s.d_velocity_rate_d_phi,
-        velocity_by_delta_e: s.d_velocity_rate_d_delta_e,
-        gamma_by_phi: s.d_force_turn_d_phi,
-        gamma_by_delta_e: i.turn_factor * p.c_l_delta_e,
-        alpha_by_phi: -s.d_force_turn_d_phi,
-        alpha_by_delta_e: d_alpha_rate_d_delta_e,
-        pitch_rate_by_phi: d_pitch_acceleration_d_phi,
-        pitch_rate_by_delta_e: d_pitch_acceleration_d_delta_e,
-    };
+    state.altitude.velocity = i.sin_gamma;
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+    state.alpha.altitude = -state.gamma.altitude;
+    state.alpha.gamma = -state.gamma.gamma;
+    state.alpha.alpha = -state.gamma.alpha;
+    state.alpha.pitch_rate = R::ONE;
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.gamma.delta_e = i.turn_factor * p.c_l_delta_e;
+    input.alpha.phi = -s.d_force_turn_d_phi;
     (state, input)
 }
 
@@ -142,9 +99,7 @@ pub fn jacobians_values_from<R: Real>(
 /// 149 operations: 38 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -153,11 +108,7 @@ pub fn jacobians_values<R: Real>(
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 #[inline(always)]
-pub fn jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (StateJacobian<R>, InputJacobian<R>) {
+pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
     (state.dense(), input.dense())
 }
@@ -170,9 +121,7 @@ pub fn jacobians<R: Real>(
 /// 167 operations: 44 additions, 118 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -185,9 +134,7 @@ pub fn drift_and_jacobians_values<R: Real>(
 /// for less than one after the other, eq. (1).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
     (drift, state.dense(), input.dense())

@@ -2,93 +2,28 @@
 
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
-use super::{
-    Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes,
-};
-
+use super::{Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity_by_m: velocity.m,
-        velocity_by_s: velocity.s,
-        velocity_by_rho_0: velocity.rho_0,
-        velocity_by_h_0: velocity.h_0,
-        velocity_by_h_s: velocity.h_s,
-        velocity_by_g: velocity.g,
-        velocity_by_r_e: velocity.r_e,
-        velocity_by_spherical_earth: velocity.spherical_earth,
-        velocity_by_t_phi_alpha_3: velocity.t_phi_alpha_3,
-        velocity_by_t_phi_alpha_2: velocity.t_phi_alpha_2,
-        velocity_by_t_phi_alpha: velocity.t_phi_alpha,
-        velocity_by_t_phi: velocity.t_phi,
-        velocity_by_t_alpha_3: velocity.t_alpha_3,
-        velocity_by_t_alpha_2: velocity.t_alpha_2,
-        velocity_by_t_alpha: velocity.t_alpha,
-        velocity_by_t_0: velocity.t_0,
-        velocity_by_c_d_alpha_2: velocity.c_d_alpha_2,
-        velocity_by_c_d_alpha: velocity.c_d_alpha,
-        velocity_by_c_d_delta_e_2: velocity.c_d_delta_e_2,
-        velocity_by_c_d_delta_e: velocity.c_d_delta_e,
-        velocity_by_c_d_0: velocity.c_d_0,
-        gamma_by_m: gamma.m,
-        gamma_by_s: gamma.s,
-        gamma_by_rho_0: gamma.rho_0,
-        gamma_by_h_0: gamma.h_0,
-        gamma_by_h_s: gamma.h_s,
-        gamma_by_g: gamma.g,
-        gamma_by_r_e: gamma.r_e,
-        gamma_by_spherical_earth: gamma.spherical_earth,
-        gamma_by_t_phi_alpha_3: gamma.t_phi_alpha_3,
-        gamma_by_t_phi_alpha_2: gamma.t_phi_alpha_2,
-        gamma_by_t_phi_alpha: gamma.t_phi_alpha,
-        gamma_by_t_phi: gamma.t_phi,
-        gamma_by_t_alpha_3: gamma.t_alpha_3,
-        gamma_by_t_alpha_2: gamma.t_alpha_2,
-        gamma_by_t_alpha: gamma.t_alpha,
-        gamma_by_t_0: gamma.t_0,
-        gamma_by_c_l_alpha: gamma.c_l_alpha,
-        gamma_by_c_l_delta_e: gamma.c_l_delta_e,
-        gamma_by_c_l_0: gamma.c_l_0,
-        alpha_by_m: alpha.m,
-        alpha_by_s: alpha.s,
-        alpha_by_rho_0: alpha.rho_0,
-        alpha_by_h_0: alpha.h_0,
-        alpha_by_h_s: alpha.h_s,
-        alpha_by_g: alpha.g,
-        alpha_by_r_e: alpha.r_e,
-        alpha_by_spherical_earth: alpha.spherical_earth,
-        alpha_by_t_phi_alpha_3: alpha.t_phi_alpha_3,
-        alpha_by_t_phi_alpha_2: alpha.t_phi_alpha_2,
-        alpha_by_t_phi_alpha: alpha.t_phi_alpha,
-        alpha_by_t_phi: alpha.t_phi,
-        alpha_by_t_alpha_3: alpha.t_alpha_3,
-        alpha_by_t_alpha_2: alpha.t_alpha_2,
-        alpha_by_t_alpha: alpha.t_alpha,
-        alpha_by_t_0: alpha.t_0,
-        alpha_by_c_l_alpha: alpha.c_l_alpha,
-        alpha_by_c_l_delta_e: alpha.c_l_delta_e,
-        alpha_by_c_l_0: alpha.c_l_0,
-        pitch_rate_by_i_yy: pitch_rate.i_yy,
-        pitch_rate_by_s: pitch_rate.s,
-        pitch_rate_by_c_bar: pitch_rate.c_bar,
-        pitch_rate_by_z_t: pitch_rate.z_t,
-        pitch_rate_by_rho_0: pitch_rate.rho_0,
-        pitch_rate_by_h_0: pitch_rate.h_0,
-        pitch_rate_by_h_s: pitch_rate.h_s,
-        pitch_rate_by_t_phi_alpha_3: pitch_rate.t_phi_alpha_3,
-        pitch_rate_by_t_phi_alpha_2: pitch_rate.t_phi_alpha_2,
-        pitch_rate_by_t_phi_alpha: pitch_rate.t_phi_alpha,
-        pitch_rate_by_t_phi: pitch_rate.t_phi,
-        pitch_rate_by_t_alpha_3: pitch_rate.t_alpha_3,
-        pitch_rate_by_t_alpha_2: pitch_rate.t_alpha_2,
-        pitch_rate_by_t_alpha: pitch_rate.t_alpha,
-        pitch_rate_by_t_0: pitch_rate.t_0,
-        pitch_rate_by_c_m_alpha_2: pitch_rate.c_m_alpha_2,
-        pitch_rate_by_c_m_alpha: pitch_rate.c_m_alpha,
-        pitch_rate_by_c_m_delta_e: pitch_rate.c_m_delta_e,
-        pitch_rate_by_c_m_0: pitch_rate.c_m_0,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        velocity {
+            m, s, rho_0, h_0, h_s, g, r_e, spherical_earth, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_0,
+        }
+        gamma {
+            m, s, rho_0, h_0, h_s, g, r_e, spherical_earth, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_l_alpha, c_l_delta_e, c_l_0,
+        }
+        alpha {
+            m, s, rho_0, h_0, h_s, g, r_e, spherical_earth, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_l_alpha, c_l_delta_e, c_l_0,
+        }
+        pitch_rate {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3,
+            t_alpha_2, t_alpha, t_0, c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_0,
+        }
     }
 }
 
@@ -98,37 +33,34 @@ ahv_core::entries! {
 ///
 /// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
+    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
 
     // Derivatives with respect to parameters
-    let d_force_turn_d_m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
+    parameter.gamma.m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
         + i.c_l * s.d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
     let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0; // lb/ft^2
-    let d_velocity_rate_d_h_0 = -d_drag_d_h_0 * p.inv_m; // 1/s^2
+    parameter.velocity.h_0 = -d_drag_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_force_turn_d_h_0 = i.c_l * d_turn_factor_d_h_0; // rad/s/ft
+    parameter.gamma.h_0 = i.c_l * d_turn_factor_d_h_0; // rad/s/ft
     let d_pitching_moment_d_h_0 = i.c_m * p.c_bar * d_reference_force_d_h_0; // lb/ft
-    let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
+    parameter.pitch_rate.h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
     let d_reference_force_d_h_s = p.s * d_dynamic_pressure_d_h_s; // lb/ft^2
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft^2
-    let d_velocity_rate_d_h_s = -d_drag_d_h_s * p.inv_m; // 1/s^2
+    parameter.velocity.h_s = -d_drag_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_force_turn_d_h_s = i.c_l * d_turn_factor_d_h_s; // rad/s/ft
+    parameter.gamma.h_s = i.c_l * d_turn_factor_d_h_s; // rad/s/ft
     let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb/ft
-    let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
+    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
     let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
         * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
@@ -137,105 +69,89 @@ pub fn parameter_jacobian_values<R: Real>(
             * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
             * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
-    ParameterJacobianEntries {
-        velocity_by_m: -i.path_force * p.inv_m_2,
-        velocity_by_s: -i.c_d * i.dynamic_pressure * p.inv_m,
-        velocity_by_rho_0: i.c_d * p.minus_half_s_over_m * i.velocity_2
-            * i.density_ratio,
-        velocity_by_h_0: d_velocity_rate_d_h_0,
-        velocity_by_h_s: d_velocity_rate_d_h_s,
-        velocity_by_g: -i.sin_gamma * i.radius_ratio_2,
-        velocity_by_r_e: i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
-            * slope_of_radius_ratio_in_earth_curvature,
-        velocity_by_spherical_earth: i.sin_gamma * p.minus_two_g_over_r_e
-            * i.radius_ratio * slope_of_radius_ratio_in_earth_curvature,
-        velocity_by_t_phi_alpha_3: i.cos_alpha * u.phi * i.alpha_3 * p.inv_m,
-        velocity_by_t_phi_alpha_2: i.cos_alpha * u.phi * i.alpha_2 * p.inv_m,
-        velocity_by_t_phi_alpha: i.cos_alpha * u.phi * x.alpha * p.inv_m,
-        velocity_by_t_phi: i.cos_alpha * u.phi * p.inv_m,
-        velocity_by_t_alpha_3: i.cos_alpha * i.alpha_3 * p.inv_m,
-        velocity_by_t_alpha_2: i.cos_alpha * i.alpha_2 * p.inv_m,
-        velocity_by_t_alpha: i.cos_alpha * x.alpha * p.inv_m,
-        velocity_by_t_0: i.cos_alpha * p.inv_m,
-        velocity_by_c_d_alpha_2: -i.reference_force * i.alpha_2 * p.inv_m,
-        velocity_by_c_d_alpha: -i.reference_force * x.alpha * p.inv_m,
-        velocity_by_c_d_delta_e_2: -i.reference_force * i.delta_e_2 * p.inv_m,
-        velocity_by_c_d_delta_e: -i.reference_force * u.delta_e * p.inv_m,
-        velocity_by_c_d_0: -i.reference_force * p.inv_m,
-        gamma_by_m: d_force_turn_d_m,
-        gamma_by_s: i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m,
-        gamma_by_rho_0: i.c_l * p.half_s_over_m * x.velocity * i.density_ratio,
-        gamma_by_h_0: d_force_turn_d_h_0,
-        gamma_by_h_s: d_force_turn_d_h_s,
-        gamma_by_g: -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
-        gamma_by_r_e: d_gamma_rate_d_r_e,
-        gamma_by_spherical_earth: d_gamma_rate_d_spherical_earth,
-        gamma_by_t_phi_alpha_3: i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3,
-        gamma_by_t_phi_alpha_2: i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2,
-        gamma_by_t_phi_alpha: i.inverse_momentum * i.sin_alpha * u.phi * x.alpha,
-        gamma_by_t_phi: i.inverse_momentum * i.sin_alpha * u.phi,
-        gamma_by_t_alpha_3: i.inverse_momentum * i.sin_alpha * i.alpha_3,
-        gamma_by_t_alpha_2: i.inverse_momentum * i.sin_alpha * i.alpha_2,
-        gamma_by_t_alpha: i.inverse_momentum * i.sin_alpha * x.alpha,
-        gamma_by_t_0: i.inverse_momentum * i.sin_alpha,
-        gamma_by_c_l_alpha: i.turn_factor * x.alpha,
-        gamma_by_c_l_delta_e: i.turn_factor * u.delta_e,
-        gamma_by_c_l_0: i.turn_factor,
-        alpha_by_m: -d_force_turn_d_m,
-        alpha_by_s: i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m,
-        alpha_by_rho_0: i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio,
-        alpha_by_h_0: -d_force_turn_d_h_0,
-        alpha_by_h_s: -d_force_turn_d_h_s,
-        alpha_by_g: i.cos_gamma * i.radius_ratio_2 * i.inv_velocity,
-        alpha_by_r_e: -d_gamma_rate_d_r_e,
-        alpha_by_spherical_earth: -d_gamma_rate_d_spherical_earth,
-        alpha_by_t_phi_alpha_3: -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3,
-        alpha_by_t_phi_alpha_2: -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2,
-        alpha_by_t_phi_alpha: -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha,
-        alpha_by_t_phi: -i.inverse_momentum * i.sin_alpha * u.phi,
-        alpha_by_t_alpha_3: -i.inverse_momentum * i.sin_alpha * i.alpha_3,
-        alpha_by_t_alpha_2: -i.inverse_momentum * i.sin_alpha * i.alpha_2,
-        alpha_by_t_alpha: -i.inverse_momentum * i.sin_alpha * x.alpha,
-        alpha_by_t_0: -i.inverse_momentum * i.sin_alpha,
-        alpha_by_c_l_alpha: -i.turn_factor * x.alpha,
-        alpha_by_c_l_delta_e: -i.turn_factor * u.delta_e,
-        alpha_by_c_l_0: -i.turn_factor,
-        pitch_rate_by_i_yy: -i.pitch_acceleration * p.inv_i_yy,
-        pitch_rate_by_s: i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure,
-        pitch_rate_by_c_bar: i.c_m * i.reference_force * p.inv_i_yy,
-        pitch_rate_by_z_t: i.thrust * p.inv_i_yy,
-        pitch_rate_by_rho_0: i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2
-            * i.density_ratio,
-        pitch_rate_by_h_0: d_pitch_acceleration_d_h_0,
-        pitch_rate_by_h_s: d_pitch_acceleration_d_h_s,
-        pitch_rate_by_t_phi_alpha_3: p.z_t_over_i_yy * u.phi * i.alpha_3,
-        pitch_rate_by_t_phi_alpha_2: p.z_t_over_i_yy * u.phi * i.alpha_2,
-        pitch_rate_by_t_phi_alpha: p.z_t_over_i_yy * u.phi * x.alpha,
-        pitch_rate_by_t_phi: p.z_t_over_i_yy * u.phi,
-        pitch_rate_by_t_alpha_3: p.z_t_over_i_yy * i.alpha_3,
-        pitch_rate_by_t_alpha_2: p.z_t_over_i_yy * i.alpha_2,
-        pitch_rate_by_t_alpha: p.z_t_over_i_yy * x.alpha,
-        pitch_rate_by_t_0: p.z_t_over_i_yy,
-        pitch_rate_by_c_m_alpha_2: i.reference_force * p.c_bar_over_i_yy * i.alpha_2,
-        pitch_rate_by_c_m_alpha: i.reference_force * p.c_bar_over_i_yy * x.alpha,
-        pitch_rate_by_c_m_delta_e: i.reference_force * p.c_bar_over_i_yy * u.delta_e,
-        pitch_rate_by_c_m_0: i.reference_force * p.c_bar_over_i_yy,
-    }
+    parameter.velocity.m = -i.path_force * p.inv_m_2;
+    parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
+    parameter.velocity.rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2 * i.density_ratio;
+    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+        * slope_of_radius_ratio_in_earth_curvature;
+    parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
+        * slope_of_radius_ratio_in_earth_curvature;
+    parameter.velocity.t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
+    parameter.velocity.t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
+    parameter.velocity.t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
+    parameter.velocity.t_phi = i.cos_alpha * u.phi * p.inv_m;
+    parameter.velocity.t_alpha_3 = i.cos_alpha * i.alpha_3 * p.inv_m;
+    parameter.velocity.t_alpha_2 = i.cos_alpha * i.alpha_2 * p.inv_m;
+    parameter.velocity.t_alpha = i.cos_alpha * x.alpha * p.inv_m;
+    parameter.velocity.t_0 = i.cos_alpha * p.inv_m;
+    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
+    parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
+    parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+    parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
+    parameter.gamma.rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
+    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.gamma.t_phi_alpha_3 = i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3;
+    parameter.gamma.t_phi_alpha_2 = i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2;
+    parameter.gamma.t_phi_alpha = i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
+    parameter.gamma.t_phi = i.inverse_momentum * i.sin_alpha * u.phi;
+    parameter.gamma.t_alpha_3 = i.inverse_momentum * i.sin_alpha * i.alpha_3;
+    parameter.gamma.t_alpha_2 = i.inverse_momentum * i.sin_alpha * i.alpha_2;
+    parameter.gamma.t_alpha = i.inverse_momentum * i.sin_alpha * x.alpha;
+    parameter.gamma.t_0 = i.inverse_momentum * i.sin_alpha;
+    parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
+    parameter.gamma.c_l_delta_e = i.turn_factor * u.delta_e;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.alpha.m = -parameter.gamma.m;
+    parameter.alpha.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
+    parameter.alpha.rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio;
+    parameter.alpha.h_0 = -parameter.gamma.h_0;
+    parameter.alpha.h_s = -parameter.gamma.h_s;
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.r_e = -parameter.gamma.r_e;
+    parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
+    parameter.alpha.t_phi_alpha_3 = -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3;
+    parameter.alpha.t_phi_alpha_2 = -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2;
+    parameter.alpha.t_phi_alpha = -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
+    parameter.alpha.t_phi = -i.inverse_momentum * i.sin_alpha * u.phi;
+    parameter.alpha.t_alpha_3 = -i.inverse_momentum * i.sin_alpha * i.alpha_3;
+    parameter.alpha.t_alpha_2 = -i.inverse_momentum * i.sin_alpha * i.alpha_2;
+    parameter.alpha.t_alpha = -i.inverse_momentum * i.sin_alpha * x.alpha;
+    parameter.alpha.t_0 = -i.inverse_momentum * i.sin_alpha;
+    parameter.alpha.c_l_alpha = -i.turn_factor * x.alpha;
+    parameter.alpha.c_l_delta_e = -i.turn_factor * u.delta_e;
+    parameter.alpha.c_l_0 = -i.turn_factor;
+    parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_i_yy;
+    parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
+    parameter.pitch_rate.c_bar = i.c_m * i.reference_force * p.inv_i_yy;
+    parameter.pitch_rate.z_t = i.thrust * p.inv_i_yy;
+    parameter.pitch_rate.rho_0 = i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2 * i.density_ratio;
+    parameter.pitch_rate.t_phi_alpha_3 = p.z_t_over_i_yy * u.phi * i.alpha_3;
+    parameter.pitch_rate.t_phi_alpha_2 = p.z_t_over_i_yy * u.phi * i.alpha_2;
+    parameter.pitch_rate.t_phi_alpha = p.z_t_over_i_yy * u.phi * x.alpha;
+    parameter.pitch_rate.t_phi = p.z_t_over_i_yy * u.phi;
+    parameter.pitch_rate.t_alpha_3 = p.z_t_over_i_yy * i.alpha_3;
+    parameter.pitch_rate.t_alpha_2 = p.z_t_over_i_yy * i.alpha_2;
+    parameter.pitch_rate.t_alpha = p.z_t_over_i_yy * x.alpha;
+    parameter.pitch_rate.t_0 = p.z_t_over_i_yy;
+    parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
+    parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
+    parameter.pitch_rate.c_m_delta_e = i.reference_force * p.c_bar_over_i_yy * u.delta_e;
+    parameter.pitch_rate.c_m_0 = i.reference_force * p.c_bar_over_i_yy;
+    parameter
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

@@ -6,128 +6,27 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
-        /// Coefficient of phi*alpha^3 in T, lb/ft/rad^3.
-        pub t_phi_alpha_3: R,
-        /// Coefficient of phi*alpha^2 in T, lb/ft/rad^2.
-        pub t_phi_alpha_2: R,
-        /// Coefficient of phi*alpha in T, lb/ft/rad.
-        pub t_phi_alpha: R,
-        /// Coefficient of phi in T, lb/ft.
-        pub t_phi: R,
-        /// Coefficient of alpha^3 in T, lb/ft/rad^3.
-        pub t_alpha_3: R,
-        /// Coefficient of alpha^2 in T, lb/ft/rad^2.
-        pub t_alpha_2: R,
-        /// Coefficient of alpha in T, lb/ft/rad.
-        pub t_alpha: R,
-        /// Constant part of T, lb/ft.
-        pub t_0: R,
-        /// Air density at the reference altitude, slug/ft^3.
-        pub rho_0: R,
-        /// Reference altitude of the air density, ft.
-        pub h_0: R,
-        /// `1 / h_s`.
-        pub inv_h_s: R,
-        /// Reference area, ft.
-        pub s: R,
-        /// Coefficient of alpha^2 in C_D, 1/rad^2.
-        pub c_d_alpha_2: R,
-        /// Coefficient of alpha in C_D, 1/rad.
-        pub c_d_alpha: R,
-        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-        pub c_d_delta_e_2: R,
-        /// Coefficient of delta_e in C_D, 1/rad.
-        pub c_d_delta_e: R,
-        /// Constant part of C_D, dimensionless.
-        pub c_d_0: R,
-        /// `1 / m`.
-        pub inv_m: R,
-        /// Acceleration of gravity at sea level, ft/s^2.
-        pub g: R,
         /// Curvature of the Earth, 0 where it is flat, 1/ft.
-        pub earth_curvature: R,
-        /// `R::HALF * s * inv_m`.
-        pub half_s_over_m: R,
-        /// Coefficient of alpha in C_L, 1/rad.
-        pub c_l_alpha: R,
-        /// Coefficient of delta_e in C_L, 1/rad.
-        pub c_l_delta_e: R,
-        /// Constant part of C_L, dimensionless.
-        pub c_l_0: R,
-        /// Thrust-to-moment coupling arm, ft.
-        pub z_t: R,
-        /// Mean aerodynamic chord, ft.
-        pub c_bar: R,
-        /// Coefficient of alpha^2 in C_M, 1/rad^2.
-        pub c_m_alpha_2: R,
-        /// Coefficient of alpha in C_M, 1/rad.
-        pub c_m_alpha: R,
-        /// Coefficient of delta_e in C_M, 1/rad.
-        pub c_m_delta_e: R,
-        /// Constant part of C_M, dimensionless.
-        pub c_m_0: R,
-        /// `1 / i_yy`.
-        pub inv_i_yy: R,
-        /// `2 * g`.
-        pub two_g: R,
-        /// `3 * t_alpha_3`.
-        pub three_t_alpha_3: R,
-        /// `2 * t_alpha_2`.
-        pub two_t_alpha_2: R,
-        /// `3 * t_phi_alpha_3`.
-        pub three_t_phi_alpha_3: R,
-        /// `2 * t_phi_alpha_2`.
-        pub two_t_phi_alpha_2: R,
-        /// `2 * c_d_alpha_2`.
-        pub two_c_d_alpha_2: R,
-        /// Vehicle mass, slug/ft.
-        pub m: R,
-        /// `2 * c_m_alpha_2`.
-        pub two_c_m_alpha_2: R,
-        /// `2 * c_d_delta_e_2`.
-        pub two_c_d_delta_e_2: R,
-        /// `z_t * inv_i_yy`.
-        pub z_t_over_i_yy: R,
-        /// `c_bar * c_m_delta_e`.
-        pub c_bar_c_m_delta_e: R,
-        /// `inv_m * inv_m`.
-        pub inv_m_2: R,
-        /// `R::from_f64(-0.5) * s * inv_m`.
-        pub minus_half_s_over_m: R,
-        /// `inv_h_s * inv_h_s`.
-        pub inv_h_s_2: R,
-        /// `2 * g * earth_curvature * inv_r_e`.
-        pub two_g_earth_curvature_over_r_e: R,
-        /// `R::from_f64(-2.0) * g * inv_r_e`.
-        pub minus_two_g_over_r_e: R,
-        /// `R::HALF * inv_m_2`.
-        pub half_inv_m_2: R,
-        /// `R::HALF * inv_m`.
-        pub half_over_m: R,
-        /// `1 / r_e`.
-        pub inv_r_e: R,
-        /// `earth_curvature * earth_curvature`.
-        pub earth_curvature_2: R,
-        /// `R::from_f64(-0.5) * inv_m`.
-        pub minus_half_over_m: R,
-        /// `c_bar * inv_i_yy`.
-        pub c_bar_over_i_yy: R,
-        /// `R::HALF * c_bar * s * inv_i_yy`.
-        pub half_c_bar_s_over_i_yy: R,
-        /// `2 * earth_curvature_2`.
-        pub two_earth_curvature_2: R,
-        /// `R::from_f64(6.0) * t_alpha_3`.
-        pub six_t_alpha_3: R,
-        /// `R::from_f64(6.0) * t_phi_alpha_3`.
-        pub six_t_phi_alpha_3: R,
-        /// `2 * m_2`.
-        pub two_m_2: R,
-        /// `c_bar * s`.
-        pub c_bar_s: R,
-        /// `2 * c_bar * c_m_alpha_2`.
-        pub two_c_bar_c_m_alpha_2: R,
+        earth_curvature,
+        inv_h_s, inv_m, half_s_over_m, inv_i_yy, two_g, three_t_alpha_3, two_t_alpha_2, three_t_phi_alpha_3,
+        two_t_phi_alpha_2, two_c_d_alpha_2, two_c_m_alpha_2, two_c_d_delta_e_2, z_t_over_i_yy, c_bar_c_m_delta_e,
+        inv_m_2, minus_half_s_over_m, inv_h_s_2, two_g_earth_curvature_over_r_e, minus_two_g_over_r_e, half_inv_m_2,
+        half_over_m, inv_r_e, earth_curvature_2, minus_half_over_m, c_bar_over_i_yy, half_c_bar_s_over_i_yy,
+        two_earth_curvature_2, six_t_alpha_3, six_t_phi_alpha_3, two_m_2, c_bar_s, two_c_bar_c_m_alpha_2,
+    }
+    from Parameters {
+        t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0,
+        rho_0, h_0,
+        s,
+        c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_0,
+        g,
+        c_l_alpha, c_l_delta_e, c_l_0,
+        z_t, c_bar,
+        c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_0,
+        m,
     }
 }
 
@@ -135,34 +34,7 @@ ahv_core::record! {
 ///
 /// 42 operations: 38 multiplications, 4 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
-    c.t_phi_alpha_3 = p.t_phi_alpha_3;
-    c.t_phi_alpha_2 = p.t_phi_alpha_2;
-    c.t_phi_alpha = p.t_phi_alpha;
-    c.t_phi = p.t_phi;
-    c.t_alpha_3 = p.t_alpha_3;
-    c.t_alpha_2 = p.t_alpha_2;
-    c.t_alpha = p.t_alpha;
-    c.t_0 = p.t_0;
-    c.rho_0 = p.rho_0;
-    c.h_0 = p.h_0;
-    c.s = p.s;
-    c.c_d_alpha_2 = p.c_d_alpha_2;
-    c.c_d_alpha = p.c_d_alpha;
-    c.c_d_delta_e_2 = p.c_d_delta_e_2;
-    c.c_d_delta_e = p.c_d_delta_e;
-    c.c_d_0 = p.c_d_0;
-    c.g = p.g;
-    c.c_l_alpha = p.c_l_alpha;
-    c.c_l_delta_e = p.c_l_delta_e;
-    c.c_l_0 = p.c_l_0;
-    c.z_t = p.z_t;
-    c.c_bar = p.c_bar;
-    c.c_m_alpha_2 = p.c_m_alpha_2;
-    c.c_m_alpha = p.c_m_alpha;
-    c.c_m_delta_e = p.c_m_delta_e;
-    c.c_m_0 = p.c_m_0;
-    c.m = p.m;
+    let mut c = Prepared::copied(p);
 
     // Gravity, (1)
     c.inv_r_e = p.r_e.recip();

@@ -40,25 +40,13 @@ impl<R: Real> Parameters<R> {
     pub fn with_canard(self, choice: Canard) -> Self {
         match choice {
             Canard::Free => {
-                Self {
-                    canard_command: R::ONE,
-                    canard_slaving: R::ZERO,
-                    ..self
-                }
+                Self { canard_command: R::ONE, canard_slaving: R::ZERO, ..self }
             }
             Canard::Slaved => {
-                Self {
-                    canard_command: R::ZERO,
-                    canard_slaving: R::ONE,
-                    ..self
-                }
+                Self { canard_command: R::ZERO, canard_slaving: R::ONE, ..self }
             }
             Canard::None => {
-                Self {
-                    canard_command: R::ZERO,
-                    canard_slaving: R::ZERO,
-                    ..self
-                }
+                Self { canard_command: R::ZERO, canard_slaving: R::ZERO, ..self }
             }
         }
     }
@@ -96,16 +84,10 @@ impl<R: Real> Parameters<R> {
     pub fn with_earth(self, choice: Earth) -> Self {
         match choice {
             Earth::Flat => {
-                Self {
-                    spherical_earth: R::ZERO,
-                    ..self
-                }
+                Self { spherical_earth: R::ZERO, ..self }
             }
             Earth::Spherical => {
-                Self {
-                    spherical_earth: R::ONE,
-                    ..self
-                }
+                Self { spherical_earth: R::ONE, ..self }
             }
         }
     }
@@ -143,16 +125,10 @@ impl<R: Real> Parameters<R> {
     pub fn with_noise(self, choice: ModalNoise) -> Self {
         match choice {
             ModalNoise::Independent => {
-                Self {
-                    shared_noise: R::ZERO,
-                    ..self
-                }
+                Self { shared_noise: R::ZERO, ..self }
             }
             ModalNoise::Shared => {
-                Self {
-                    shared_noise: R::ONE,
-                    ..self
-                }
+                Self { shared_noise: R::ONE, ..self }
             }
         }
     }
@@ -193,25 +169,13 @@ impl<R: Real> Parameters<R> {
     pub fn with_reduction(self, choice: Reduction) -> Self {
         match choice {
             Reduction::Printed => {
-                Self {
-                    moment_matching: R::ZERO,
-                    variance_matching: R::ZERO,
-                    ..self
-                }
+                Self { moment_matching: R::ZERO, variance_matching: R::ZERO, ..self }
             }
             Reduction::Variance => {
-                Self {
-                    moment_matching: R::ZERO,
-                    variance_matching: R::ONE,
-                    ..self
-                }
+                Self { moment_matching: R::ZERO, variance_matching: R::ONE, ..self }
             }
             Reduction::Moment => {
-                Self {
-                    moment_matching: R::ONE,
-                    variance_matching: R::ZERO,
-                    ..self
-                }
+                Self { moment_matching: R::ONE, variance_matching: R::ZERO, ..self }
             }
         }
     }

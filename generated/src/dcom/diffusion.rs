@@ -2,64 +2,47 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{
-    Diffusion, Input, Intermediates, Noise, Prepared, Slopes, State, drift_from,
-    intermediates, slopes,
-};
-
+use super::{Diffusion, Input, Intermediates, Noise, Prepared, Slopes, State, drift_from, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Diffusion`].
-    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
-        velocity_by_w_gamma: velocity.w_gamma,
-        velocity_by_w_alpha: velocity.w_alpha,
-        altitude_by_w_gamma: altitude.w_gamma,
-        gamma_by_w_gamma: gamma.w_gamma,
-        gamma_by_w_alpha: gamma.w_alpha,
-        alpha_by_w_gamma: alpha.w_gamma,
-        alpha_by_w_alpha: alpha.w_alpha,
-        alpha_by_w_q: alpha.w_q,
-        pitch_rate_by_w_alpha: pitch_rate.w_alpha,
-        eta_dot_1_by_w_alpha: eta_dot_1.w_alpha,
-        eta_dot_1_by_xi_1: eta_dot_1.xi_1,
-        eta_dot_2_by_w_alpha: eta_dot_2.w_alpha,
-        eta_dot_2_by_xi_1: eta_dot_2.xi_1,
-        eta_dot_2_by_xi_2: eta_dot_2.xi_2,
-        eta_dot_3_by_w_alpha: eta_dot_3.w_alpha,
-        eta_dot_3_by_xi_1: eta_dot_3.xi_1,
-        eta_dot_3_by_xi_3: eta_dot_3.xi_3,
+    pub struct DiffusionEntries in diffusion_entries, DIFFUSION_PATTERN: State<Noise> {
+        velocity { w_gamma, w_alpha }
+        altitude { w_gamma }
+        gamma { w_gamma, w_alpha }
+        alpha { w_gamma, w_alpha, w_q }
+        pitch_rate { w_alpha }
+        eta_dot_1 { w_alpha, xi_1 }
+        eta_dot_2 { w_alpha, xi_1, xi_2 }
+        eta_dot_3 { w_alpha, xi_1, xi_3 }
     }
 }
 
 /// [`diffusion_values`] where its stages are computed already.
 #[inline(always)]
 pub fn diffusion_values_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    _i: &Intermediates<R>,
-    s: &Slopes<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, _i: &Intermediates<R>, s: &Slopes<R>,
 ) -> DiffusionEntries<R> {
-    DiffusionEntries {
-        velocity_by_w_gamma: s.d_velocity_rate_d_gamma * p.w_gamma,
-        velocity_by_w_alpha: s.d_velocity_rate_d_alpha * p.w_alpha,
-        altitude_by_w_gamma: s.d_altitude_rate_d_gamma * p.w_gamma,
-        gamma_by_w_gamma: s.d_gamma_rate_d_gamma * p.w_gamma,
-        gamma_by_w_alpha: s.d_force_turn_d_alpha * p.w_alpha,
-        alpha_by_w_gamma: -s.d_gamma_rate_d_gamma * p.w_gamma,
-        alpha_by_w_alpha: -s.d_force_turn_d_alpha * p.w_alpha,
-        alpha_by_w_q: p.w_q,
-        pitch_rate_by_w_alpha: s.d_pitch_acceleration_d_alpha * p.w_alpha,
-        eta_dot_1_by_w_alpha: s.d_generalized_force_1_d_alpha * p.w_alpha,
-        eta_dot_1_by_xi_1: p.sigma_1,
-        eta_dot_2_by_w_alpha: s.d_generalized_force_2_d_alpha * p.w_alpha,
-        eta_dot_2_by_xi_1: p.sigma_2_shared_noise,
-        eta_dot_2_by_xi_2: p.sigma_2_own_noise,
-        eta_dot_3_by_w_alpha: s.d_generalized_force_3_d_alpha * p.w_alpha,
-        eta_dot_3_by_xi_1: p.sigma_3_shared_noise,
-        eta_dot_3_by_xi_3: p.sigma_3_own_noise,
-    }
+    let mut diffusion = DiffusionEntries::splat(R::ZERO);
+    diffusion.velocity.w_gamma = s.d_velocity_rate_d_gamma * p.w_gamma;
+    diffusion.velocity.w_alpha = s.d_velocity_rate_d_alpha * p.w_alpha;
+    diffusion.altitude.w_gamma = s.d_altitude_rate_d_gamma * p.w_gamma;
+    diffusion.gamma.w_gamma = s.d_gamma_rate_d_gamma * p.w_gamma;
+    diffusion.gamma.w_alpha = s.d_force_turn_d_alpha * p.w_alpha;
+    diffusion.alpha.w_gamma = -s.d_gamma_rate_d_gamma * p.w_gamma;
+    diffusion.alpha.w_alpha = -s.d_force_turn_d_alpha * p.w_alpha;
+    diffusion.alpha.w_q = p.w_q;
+    diffusion.pitch_rate.w_alpha = s.d_pitch_acceleration_d_alpha * p.w_alpha;
+    diffusion.eta_dot_1.w_alpha = s.d_generalized_force_1_d_alpha * p.w_alpha;
+    diffusion.eta_dot_1.xi_1 = p.sigma_1;
+    diffusion.eta_dot_2.w_alpha = s.d_generalized_force_2_d_alpha * p.w_alpha;
+    diffusion.eta_dot_2.xi_1 = p.sigma_2_shared_noise;
+    diffusion.eta_dot_2.xi_2 = p.sigma_2_own_noise;
+    diffusion.eta_dot_3.w_alpha = s.d_generalized_force_3_d_alpha * p.w_alpha;
+    diffusion.eta_dot_3.xi_1 = p.sigma_3_shared_noise;
+    diffusion.eta_dot_3.xi_3 = p.sigma_3_own_noise;
+    diffusion
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the columns of w_gamma,
@@ -69,11 +52,7 @@ pub fn diffusion_values_from<R: Real>(
 ///
 /// 99 operations: 28 additions, 66 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn diffusion_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> DiffusionEntries<R> {
+pub fn diffusion_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     diffusion_values_from(x, u, p, &i, &s)
@@ -90,11 +69,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 ///
 /// 205 operations: 75 additions, 125 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn drift_and_diffusion<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (State<R>, Diffusion<R>) {
+pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let drift = drift_from(x, u, p, &i);
@@ -105,17 +80,10 @@ pub fn drift_and_diffusion<R: Real>(
 /// [`noise_increment`] where its stages are computed already.
 #[inline(always)]
 pub fn noise_increment_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-    _i: &Intermediates<R>,
-    s: &Slopes<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>, _i: &Intermediates<R>, s: &Slopes<R>,
 ) -> State<R> {
-    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = s.d_gamma_rate_d_gamma
-        * p.w_gamma * dw.w_gamma;
-    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = s.d_force_turn_d_alpha
-        * p.w_alpha * dw.w_alpha;
+    let d_gamma_rate_d_gamma_times_w_gamma_times_dw_gamma = s.d_gamma_rate_d_gamma * p.w_gamma * dw.w_gamma;
+    let d_force_turn_d_alpha_times_w_alpha_times_dw_alpha = s.d_force_turn_d_alpha * p.w_alpha * dw.w_alpha;
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
@@ -143,12 +111,7 @@ pub fn noise_increment_from<R: Real>(
 ///
 /// 122 operations: 37 additions, 80 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-) -> State<R> {
+pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     noise_increment_from(x, u, p, dw, &i, &s)
@@ -160,10 +123,7 @@ pub fn noise_increment<R: Real>(
 /// 228 operations: 84 additions, 139 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);

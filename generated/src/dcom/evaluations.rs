@@ -10,8 +10,7 @@ use ahv_core::Real;
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.density
+    intermediates(x, u, p).density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
@@ -19,8 +18,7 @@ pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.dynamic_pressure
+    intermediates(x, u, p).dynamic_pressure
 }
 
 /// Lift coefficient, eq. (3). Unit: 1.
@@ -28,8 +26,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) ->
 /// 13 operations: 6 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_l
+    intermediates(x, u, p).c_l
 }
 
 /// Drag coefficient, eq. (3). Unit: 1.
@@ -37,8 +34,7 @@ pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 24 operations: 10 additions, 14 multiplications.
 #[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_d
+    intermediates(x, u, p).c_d
 }
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
@@ -46,8 +42,7 @@ pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 18 operations: 8 additions, 10 multiplications.
 #[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_m
+    intermediates(x, u, p).c_m
 }
 
 /// Thrust coefficient, eq. (3). Unit: 1.
@@ -55,8 +50,7 @@ pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 22 operations: 10 additions, 12 multiplications.
 #[inline(always)]
 pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_t
+    intermediates(x, u, p).c_t
 }
 
 /// Thrust, eq. (2). Unit: lb/ft.
@@ -64,8 +58,7 @@ pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 31 operations: 11 additions, 19 multiplications, 1 exp.
 #[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.thrust
+    intermediates(x, u, p).thrust
 }
 
 /// Lift, eq. (2). Unit: lb/ft.
@@ -74,8 +67,6 @@ pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Forces and moment, (2)
     i.reference_force * i.c_l
 }
 
@@ -84,8 +75,7 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 33 operations: 11 additions, 21 multiplications, 1 exp.
 #[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.drag
+    intermediates(x, u, p).drag
 }
 
 /// Pitching moment, eq. (2). Unit: lb.
@@ -93,8 +83,7 @@ pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 52 operations: 20 additions, 31 multiplications, 1 exp.
 #[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.pitching_moment
+    intermediates(x, u, p).pitching_moment
 }
 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
@@ -102,8 +91,7 @@ pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> 
 /// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_n_1
+    intermediates(x, u, p).c_n_1
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -111,8 +99,7 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_1
+    intermediates(x, u, p).generalized_force_1
 }
 
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
@@ -120,8 +107,7 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_n_2
+    intermediates(x, u, p).c_n_2
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -129,8 +115,7 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_2
+    intermediates(x, u, p).generalized_force_2
 }
 
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
@@ -138,8 +123,7 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_n_3
+    intermediates(x, u, p).c_n_3
 }
 
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -147,6 +131,5 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_3
+    intermediates(x, u, p).generalized_force_3
 }

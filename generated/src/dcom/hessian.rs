@@ -2,432 +2,275 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{
-    Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures,
-    intermediates, slopes,
-};
-
+use super::{Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Hessian`].
-    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
-        velocity_by_velocity_velocity: velocity.velocity.velocity,
-        velocity_by_altitude_velocity: velocity.altitude.velocity,
-        velocity_by_altitude_altitude: velocity.altitude.altitude,
-        velocity_by_gamma_altitude: velocity.gamma.altitude,
-        velocity_by_gamma_gamma: velocity.gamma.gamma,
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        velocity_by_alpha_altitude: velocity.alpha.altitude,
-        velocity_by_alpha_alpha: velocity.alpha.alpha,
-        velocity_by_eta_1_velocity: velocity.eta_1.velocity,
-        velocity_by_eta_1_altitude: velocity.eta_1.altitude,
-        velocity_by_eta_1_alpha: velocity.eta_1.alpha,
-        velocity_by_eta_2_velocity: velocity.eta_2.velocity,
-        velocity_by_eta_2_altitude: velocity.eta_2.altitude,
-        velocity_by_eta_2_alpha: velocity.eta_2.alpha,
-        velocity_by_eta_3_velocity: velocity.eta_3.velocity,
-        velocity_by_eta_3_altitude: velocity.eta_3.altitude,
-        velocity_by_eta_3_alpha: velocity.eta_3.alpha,
-        altitude_by_gamma_velocity: altitude.gamma.velocity,
-        altitude_by_gamma_gamma: altitude.gamma.gamma,
-        gamma_by_velocity_velocity: gamma.velocity.velocity,
-        gamma_by_altitude_velocity: gamma.altitude.velocity,
-        gamma_by_altitude_altitude: gamma.altitude.altitude,
-        gamma_by_gamma_velocity: gamma.gamma.velocity,
-        gamma_by_gamma_altitude: gamma.gamma.altitude,
-        gamma_by_gamma_gamma: gamma.gamma.gamma,
-        gamma_by_alpha_velocity: gamma.alpha.velocity,
-        gamma_by_alpha_altitude: gamma.alpha.altitude,
-        gamma_by_alpha_alpha: gamma.alpha.alpha,
-        gamma_by_eta_1_velocity: gamma.eta_1.velocity,
-        gamma_by_eta_1_altitude: gamma.eta_1.altitude,
-        gamma_by_eta_1_alpha: gamma.eta_1.alpha,
-        gamma_by_eta_2_velocity: gamma.eta_2.velocity,
-        gamma_by_eta_2_altitude: gamma.eta_2.altitude,
-        gamma_by_eta_2_alpha: gamma.eta_2.alpha,
-        gamma_by_eta_3_velocity: gamma.eta_3.velocity,
-        gamma_by_eta_3_altitude: gamma.eta_3.altitude,
-        gamma_by_eta_3_alpha: gamma.eta_3.alpha,
-        alpha_by_velocity_velocity: alpha.velocity.velocity,
-        alpha_by_altitude_velocity: alpha.altitude.velocity,
-        alpha_by_altitude_altitude: alpha.altitude.altitude,
-        alpha_by_gamma_velocity: alpha.gamma.velocity,
-        alpha_by_gamma_altitude: alpha.gamma.altitude,
-        alpha_by_gamma_gamma: alpha.gamma.gamma,
-        alpha_by_alpha_velocity: alpha.alpha.velocity,
-        alpha_by_alpha_altitude: alpha.alpha.altitude,
-        alpha_by_alpha_alpha: alpha.alpha.alpha,
-        alpha_by_eta_1_velocity: alpha.eta_1.velocity,
-        alpha_by_eta_1_altitude: alpha.eta_1.altitude,
-        alpha_by_eta_1_alpha: alpha.eta_1.alpha,
-        alpha_by_eta_2_velocity: alpha.eta_2.velocity,
-        alpha_by_eta_2_altitude: alpha.eta_2.altitude,
-        alpha_by_eta_2_alpha: alpha.eta_2.alpha,
-        alpha_by_eta_3_velocity: alpha.eta_3.velocity,
-        alpha_by_eta_3_altitude: alpha.eta_3.altitude,
-        alpha_by_eta_3_alpha: alpha.eta_3.alpha,
-        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
-        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
-        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
-        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
-        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
-        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
-        pitch_rate_by_eta_1_velocity: pitch_rate.eta_1.velocity,
-        pitch_rate_by_eta_1_altitude: pitch_rate.eta_1.altitude,
-        pitch_rate_by_eta_2_velocity: pitch_rate.eta_2.velocity,
-        pitch_rate_by_eta_2_altitude: pitch_rate.eta_2.altitude,
-        pitch_rate_by_eta_3_velocity: pitch_rate.eta_3.velocity,
-        pitch_rate_by_eta_3_altitude: pitch_rate.eta_3.altitude,
-        eta_dot_1_by_velocity_velocity: eta_dot_1.velocity.velocity,
-        eta_dot_1_by_altitude_velocity: eta_dot_1.altitude.velocity,
-        eta_dot_1_by_altitude_altitude: eta_dot_1.altitude.altitude,
-        eta_dot_1_by_alpha_velocity: eta_dot_1.alpha.velocity,
-        eta_dot_1_by_alpha_altitude: eta_dot_1.alpha.altitude,
-        eta_dot_1_by_alpha_alpha: eta_dot_1.alpha.alpha,
-        eta_dot_2_by_velocity_velocity: eta_dot_2.velocity.velocity,
-        eta_dot_2_by_altitude_velocity: eta_dot_2.altitude.velocity,
-        eta_dot_2_by_altitude_altitude: eta_dot_2.altitude.altitude,
-        eta_dot_2_by_alpha_velocity: eta_dot_2.alpha.velocity,
-        eta_dot_2_by_alpha_altitude: eta_dot_2.alpha.altitude,
-        eta_dot_2_by_alpha_alpha: eta_dot_2.alpha.alpha,
-        eta_dot_3_by_velocity_velocity: eta_dot_3.velocity.velocity,
-        eta_dot_3_by_altitude_velocity: eta_dot_3.altitude.velocity,
-        eta_dot_3_by_altitude_altitude: eta_dot_3.altitude.altitude,
-        eta_dot_3_by_alpha_velocity: eta_dot_3.alpha.velocity,
-        eta_dot_3_by_alpha_altitude: eta_dot_3.alpha.altitude,
-        eta_dot_3_by_alpha_alpha: eta_dot_3.alpha.alpha,
+    pub struct HessianEntries in hessian_entries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity {
+            velocity { velocity } altitude { velocity, altitude } gamma { altitude, gamma }
+            alpha { velocity, altitude, alpha } eta_1 { velocity, altitude, alpha } eta_2 { velocity, altitude, alpha }
+            eta_3 { velocity, altitude, alpha }
+        }
+        altitude { gamma { velocity, gamma } }
+        gamma {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } eta_1 { velocity, altitude, alpha } eta_2 { velocity, altitude, alpha }
+            eta_3 { velocity, altitude, alpha }
+        }
+        alpha {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } eta_1 { velocity, altitude, alpha } eta_2 { velocity, altitude, alpha }
+            eta_3 { velocity, altitude, alpha }
+        }
+        pitch_rate {
+            velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha }
+            eta_1 { velocity, altitude } eta_2 { velocity, altitude } eta_3 { velocity, altitude }
+        }
+        eta_dot_1 { velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha } }
+        eta_dot_2 { velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha } }
+        eta_dot_3 { velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha } }
     }
 }
 
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-fn hessian_by_velocity<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
+fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     // Derivatives with respect to velocity
     let d2_thrust_d_velocity_d_velocity = i.c_t * p.s * i.density; // lb*s^2/ft^3
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
-    let d2_path_force_d_velocity_d_velocity = i.cos_alpha
-        * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
-    let d2_velocity_rate_d_velocity_d_velocity = d2_path_force_d_velocity_d_velocity
-        * p.inv_m; // 1/ft
+    let d2_path_force_d_velocity_d_velocity = i.cos_alpha * d2_thrust_d_velocity_d_velocity
+        - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
+    hessian.velocity.velocity.velocity = d2_path_force_d_velocity_d_velocity * p.inv_m; // 1/ft
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
     let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = -i.cos_gamma
-        * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+    hessian.gamma.velocity.velocity = -i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
     let d2_pitching_moment_d_velocity_d_velocity = p.c_bar_s * i.c_m * i.density
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_i_yy; // rad/ft^2
-    let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
-    let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
-    let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
+    hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
+    hessian.eta_dot_1.velocity.velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
+    hessian.eta_dot_2.velocity.velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
+    hessian.eta_dot_3.velocity.velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
 
-    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
-    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
-    hessian.eta_dot_1_by_velocity_velocity = d2_generalized_force_1_d_velocity_d_velocity;
-    hessian.eta_dot_2_by_velocity_velocity = d2_generalized_force_2_d_velocity_d_velocity;
-    hessian.eta_dot_3_by_velocity_velocity = d2_generalized_force_3_d_velocity_d_velocity;
+    hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
 /// Entries of [`hessian_values`]: derivatives by altitude.
 #[inline(always)]
 fn hessian_by_altitude<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    let d2_reference_force_d_velocity_d_altitude = p.s
-        * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_thrust_d_velocity_d_altitude = i.c_t
-        * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_thrust_d_velocity_d_altitude = i.c_t * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_path_force_d_velocity_d_altitude = i.cos_alpha
-        * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_velocity_rate_d_velocity_d_altitude = d2_path_force_d_velocity_d_altitude
-        * p.inv_m; // 1/s/ft
+    let d2_path_force_d_velocity_d_altitude = i.cos_alpha * d2_thrust_d_velocity_d_altitude
+        - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
+    hessian.velocity.altitude.velocity = d2_path_force_d_velocity_d_altitude * p.inv_m; // 1/s/ft
     let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     let d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
-    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
     let d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     let d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    let d2_density_d_altitude_d_altitude = p.rho_0
-        * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_density_d_altitude_d_altitude = p.rho_0 * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * d2_density_d_altitude_d_altitude; // lb/ft^4
-    let d2_reference_force_d_altitude_d_altitude = p.s
-        * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    let d2_thrust_d_altitude_d_altitude = i.c_t
-        * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
+    let d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_thrust_d_altitude_d_altitude = i.c_t * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
-    let d2_path_force_d_altitude_d_altitude = i.cos_alpha
-        * d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
-    let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
-        * p.inv_m - i.sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_path_force_d_altitude_d_altitude = i.cos_alpha * d2_thrust_d_altitude_d_altitude
+        - d2_drag_d_altitude_d_altitude; // lb/ft^3
+    hessian.velocity.altitude.altitude = d2_path_force_d_altitude_d_altitude * p.inv_m
+        - i.sin_gamma * d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
     let d2_force_turn_d_velocity_d_altitude = i.normal_coefficient
         * d2_turn_factor_d_velocity_d_altitude; // rad/ft^2
-    let d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
+    hessian.gamma.altitude.velocity = d2_force_turn_d_velocity_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
+    let d2_gravity_turn_d_altitude_d_altitude = d2_gravity_d_altitude_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * d2_density_d_altitude_d_altitude; // 1/s/ft^2
     let d2_force_turn_d_altitude_d_altitude = i.normal_coefficient
         * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
+    hessian.gamma.altitude.altitude = d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
     let d2_pitching_moment_d_velocity_d_altitude = p.c_bar * i.c_m
-        * d2_reference_force_d_velocity_d_altitude
-        + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
-        * p.inv_i_yy; // rad/s/ft^2
+        * d2_reference_force_d_velocity_d_altitude + p.z_t * d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
+    hessian.pitch_rate.altitude.velocity = d2_pitching_moment_d_velocity_d_altitude * p.inv_i_yy; // rad/s/ft^2
     let d2_pitching_moment_d_altitude_d_altitude = p.c_bar * i.c_m
-        * d2_reference_force_d_altitude_d_altitude
-        + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
-    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
-        * p.inv_i_yy; // rad/s^2/ft^2
-    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
-        * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
-        * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+        * d2_reference_force_d_altitude_d_altitude + p.z_t * d2_thrust_d_altitude_d_altitude; // lb/ft^2
+    hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
+    hessian.eta_dot_1.altitude.velocity = i.c_n_1 * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    hessian.eta_dot_1.altitude.altitude = i.c_n_1 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    hessian.eta_dot_2.altitude.velocity = i.c_n_2 * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    hessian.eta_dot_2.altitude.altitude = i.c_n_2 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
+    hessian.eta_dot_3.altitude.velocity = i.c_n_3 * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
+    hessian.eta_dot_3.altitude.altitude = i.c_n_3 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
 
-    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
-    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
-    hessian.gamma_by_altitude_velocity = d2_gamma_rate_d_velocity_d_altitude;
-    hessian.gamma_by_altitude_altitude = d2_gamma_rate_d_altitude_d_altitude;
-    hessian.alpha_by_altitude_velocity = -d2_gamma_rate_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = -d2_gamma_rate_d_altitude_d_altitude;
-    hessian.pitch_rate_by_altitude_velocity = d2_pitch_acceleration_d_velocity_d_altitude;
-    hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
-    hessian.eta_dot_1_by_altitude_velocity = d2_generalized_force_1_d_velocity_d_altitude;
-    hessian.eta_dot_1_by_altitude_altitude = d2_generalized_force_1_d_altitude_d_altitude;
-    hessian.eta_dot_2_by_altitude_velocity = d2_generalized_force_2_d_velocity_d_altitude;
-    hessian.eta_dot_2_by_altitude_altitude = d2_generalized_force_2_d_altitude_d_altitude;
-    hessian.eta_dot_3_by_altitude_velocity = d2_generalized_force_3_d_velocity_d_altitude;
-    hessian.eta_dot_3_by_altitude_altitude = d2_generalized_force_3_d_altitude_d_altitude;
+    hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
+    hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
 
 /// Entries of [`hessian_values`]: derivatives by gamma, alpha, eta_1.
 #[inline(always)]
 fn hessian_by_gamma_to_eta_1<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
     // Derivatives with respect to eta_1
     let d2_thrust_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_eta_1 = i.cos_alpha * d2_thrust_d_velocity_d_eta_1
         - d2_drag_d_velocity_d_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_eta_1 = d2_path_force_d_velocity_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.eta_1.velocity = d2_path_force_d_velocity_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
     let d2_thrust_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_eta_1 = i.cos_alpha * d2_thrust_d_altitude_d_eta_1
         - d2_drag_d_altitude_d_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_eta_1 = d2_path_force_d_altitude_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-    let d2_path_force_d_alpha_d_eta_1 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_eta_1 = d2_path_force_d_alpha_d_eta_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-    let d2_force_turn_d_velocity_d_eta_1 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_eta_1; // rad/ft^1.5/slug^0.5
-    let d2_force_turn_d_altitude_d_eta_1 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_eta_1; // rad/s/ft^1.5/slug^0.5
-    let d2_force_turn_d_alpha_d_eta_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
-    let d2_pitching_moment_d_velocity_d_eta_1 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_velocity_d_eta_1; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_eta_1 = d2_pitching_moment_d_velocity_d_eta_1
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-    let d2_pitching_moment_d_altitude_d_eta_1 = s.d_reference_force_d_altitude
-        * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_altitude_d_eta_1; // lb/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_altitude_d_eta_1 = d2_pitching_moment_d_altitude_d_eta_1
-        * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    hessian.velocity.eta_1.altitude = d2_path_force_d_altitude_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_eta_1 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_1;
+    hessian.velocity.eta_1.alpha = d2_path_force_d_alpha_d_eta_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    hessian.gamma.eta_1.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_eta_1; // rad/ft^1.5/slug^0.5
+    hessian.gamma.eta_1.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_eta_1; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.eta_1.alpha = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_1
+        + p.z_t * d2_thrust_d_velocity_d_eta_1; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_1.velocity = d2_pitching_moment_d_velocity_d_eta_1 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
+        + p.z_t * d2_thrust_d_altitude_d_eta_1; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_1.altitude = d2_pitching_moment_d_altitude_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_gamma_altitude = h.d2_velocity_rate_d_altitude_d_gamma;
-    hessian.velocity_by_gamma_gamma = h.d2_velocity_rate_d_gamma_d_gamma;
-    hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = h.d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = h.d2_gamma_rate_d_velocity_d_gamma;
-    hessian.gamma_by_gamma_altitude = h.d2_gamma_rate_d_altitude_d_gamma;
-    hessian.gamma_by_gamma_gamma = h.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
-    hessian.alpha_by_gamma_altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
-    hessian.alpha_by_gamma_gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.velocity_by_alpha_velocity = h.d2_velocity_rate_d_velocity_d_alpha;
-    hessian.velocity_by_alpha_altitude = h.d2_velocity_rate_d_altitude_d_alpha;
-    hessian.velocity_by_alpha_alpha = h.d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma_by_alpha_velocity = h.d2_force_turn_d_velocity_d_alpha;
-    hessian.gamma_by_alpha_altitude = h.d2_force_turn_d_altitude_d_alpha;
-    hessian.gamma_by_alpha_alpha = h.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -h.d2_force_turn_d_velocity_d_alpha;
-    hessian.alpha_by_alpha_altitude = -h.d2_force_turn_d_altitude_d_alpha;
-    hessian.alpha_by_alpha_alpha = -h.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
-    hessian.pitch_rate_by_alpha_altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
-    hessian.pitch_rate_by_alpha_alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
-    hessian.eta_dot_1_by_alpha_velocity = h.d2_generalized_force_1_d_velocity_d_alpha;
-    hessian.eta_dot_1_by_alpha_altitude = h.d2_generalized_force_1_d_altitude_d_alpha;
-    hessian.eta_dot_1_by_alpha_alpha = h.d2_generalized_force_1_d_alpha_d_alpha;
-    hessian.eta_dot_2_by_alpha_velocity = h.d2_generalized_force_2_d_velocity_d_alpha;
-    hessian.eta_dot_2_by_alpha_altitude = h.d2_generalized_force_2_d_altitude_d_alpha;
-    hessian.eta_dot_2_by_alpha_alpha = h.d2_generalized_force_2_d_alpha_d_alpha;
-    hessian.eta_dot_3_by_alpha_velocity = h.d2_generalized_force_3_d_velocity_d_alpha;
-    hessian.eta_dot_3_by_alpha_altitude = h.d2_generalized_force_3_d_altitude_d_alpha;
-    hessian.eta_dot_3_by_alpha_alpha = h.d2_generalized_force_3_d_alpha_d_alpha;
-    hessian.velocity_by_eta_1_velocity = d2_velocity_rate_d_velocity_d_eta_1;
-    hessian.velocity_by_eta_1_altitude = d2_velocity_rate_d_altitude_d_eta_1;
-    hessian.velocity_by_eta_1_alpha = d2_velocity_rate_d_alpha_d_eta_1;
-    hessian.gamma_by_eta_1_velocity = d2_force_turn_d_velocity_d_eta_1;
-    hessian.gamma_by_eta_1_altitude = d2_force_turn_d_altitude_d_eta_1;
-    hessian.gamma_by_eta_1_alpha = d2_force_turn_d_alpha_d_eta_1;
-    hessian.alpha_by_eta_1_velocity = -d2_force_turn_d_velocity_d_eta_1;
-    hessian.alpha_by_eta_1_altitude = -d2_force_turn_d_altitude_d_eta_1;
-    hessian.alpha_by_eta_1_alpha = -d2_force_turn_d_alpha_d_eta_1;
-    hessian.pitch_rate_by_eta_1_velocity = d2_pitch_acceleration_d_velocity_d_eta_1;
-    hessian.pitch_rate_by_eta_1_altitude = d2_pitch_acceleration_d_altitude_d_eta_1;
+    hessian.velocity.gamma.altitude = h.d2_velocity_rate_d_altitude_d_gamma;
+    hessian.velocity.gamma.gamma = h.d2_velocity_rate_d_gamma_d_gamma;
+    hessian.altitude.gamma.velocity = i.cos_gamma;
+    hessian.altitude.gamma.gamma = h.d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma.gamma.velocity = h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.gamma.gamma.altitude = h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.gamma.gamma.gamma = h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha.gamma.velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.alpha.gamma.altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.alpha.gamma.gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.velocity.alpha.velocity = h.d2_velocity_rate_d_velocity_d_alpha;
+    hessian.velocity.alpha.altitude = h.d2_velocity_rate_d_altitude_d_alpha;
+    hessian.velocity.alpha.alpha = h.d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha.alpha.velocity = -h.d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha.alpha.altitude = -h.d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha.alpha.alpha = -h.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate.alpha.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate.alpha.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.eta_dot_1.alpha.velocity = h.d2_generalized_force_1_d_velocity_d_alpha;
+    hessian.eta_dot_1.alpha.altitude = h.d2_generalized_force_1_d_altitude_d_alpha;
+    hessian.eta_dot_1.alpha.alpha = h.d2_generalized_force_1_d_alpha_d_alpha;
+    hessian.eta_dot_2.alpha.velocity = h.d2_generalized_force_2_d_velocity_d_alpha;
+    hessian.eta_dot_2.alpha.altitude = h.d2_generalized_force_2_d_altitude_d_alpha;
+    hessian.eta_dot_2.alpha.alpha = h.d2_generalized_force_2_d_alpha_d_alpha;
+    hessian.eta_dot_3.alpha.velocity = h.d2_generalized_force_3_d_velocity_d_alpha;
+    hessian.eta_dot_3.alpha.altitude = h.d2_generalized_force_3_d_altitude_d_alpha;
+    hessian.eta_dot_3.alpha.alpha = h.d2_generalized_force_3_d_alpha_d_alpha;
+    hessian.alpha.eta_1.velocity = -hessian.gamma.eta_1.velocity;
+    hessian.alpha.eta_1.altitude = -hessian.gamma.eta_1.altitude;
+    hessian.alpha.eta_1.alpha = -hessian.gamma.eta_1.alpha;
 }
 
 /// Entries of [`hessian_values`]: derivatives by eta_2, eta_3.
 #[inline(always)]
 fn hessian_by_eta_2_eta_3<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to eta_2
     let d2_thrust_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_eta_2 = i.cos_alpha * d2_thrust_d_velocity_d_eta_2
         - d2_drag_d_velocity_d_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_eta_2 = d2_path_force_d_velocity_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.eta_2.velocity = d2_path_force_d_velocity_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
     let d2_thrust_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_eta_3 = i.cos_alpha * d2_thrust_d_velocity_d_eta_3
         - d2_drag_d_velocity_d_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_eta_3 = d2_path_force_d_velocity_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.eta_3.velocity = d2_path_force_d_velocity_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
     let d2_thrust_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_eta_2 = i.cos_alpha * d2_thrust_d_altitude_d_eta_2
         - d2_drag_d_altitude_d_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_eta_2 = d2_path_force_d_altitude_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    hessian.velocity.eta_2.altitude = d2_path_force_d_altitude_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
     let d2_thrust_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_eta_3 = i.cos_alpha * d2_thrust_d_altitude_d_eta_3
         - d2_drag_d_altitude_d_eta_3; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_eta_3 = d2_path_force_d_altitude_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    hessian.velocity.eta_3.altitude = d2_path_force_d_altitude_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_path_force_d_alpha_d_eta_2 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_eta_2 = d2_path_force_d_alpha_d_eta_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_eta_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2;
+    hessian.velocity.eta_2.alpha = d2_path_force_d_alpha_d_eta_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_path_force_d_alpha_d_eta_3 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_eta_3 = d2_path_force_d_alpha_d_eta_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_eta_3 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_3;
+    hessian.velocity.eta_3.alpha = d2_path_force_d_alpha_d_eta_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_force_turn_d_velocity_d_eta_2 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
+    hessian.gamma.eta_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_force_turn_d_velocity_d_eta_3 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_eta_3; // rad/ft^1.5/slug^0.5
+    hessian.gamma.eta_3.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_eta_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_force_turn_d_altitude_d_eta_2 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.eta_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_force_turn_d_altitude_d_eta_3 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_eta_3; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.eta_3.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_eta_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_force_turn_d_alpha_d_eta_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    hessian.gamma.eta_2.alpha = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_force_turn_d_alpha_d_eta_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    hessian.gamma.eta_3.alpha = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_pitching_moment_d_velocity_d_eta_2 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_2 + p.z_t * d2_thrust_d_velocity_d_eta_2; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_eta_2 = d2_pitching_moment_d_velocity_d_eta_2
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_velocity_d_eta_2; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_2.velocity = d2_pitching_moment_d_velocity_d_eta_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_pitching_moment_d_velocity_d_eta_3 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_velocity_d_eta_3; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_eta_3 = d2_pitching_moment_d_velocity_d_eta_3
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_3
+        + p.z_t * d2_thrust_d_velocity_d_eta_3; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_3.velocity = d2_pitching_moment_d_velocity_d_eta_3 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_2
-    let d2_pitching_moment_d_altitude_d_eta_2 = s.d_reference_force_d_altitude
-        * p.c_bar_c_m_eta_2 + p.z_t * d2_thrust_d_altitude_d_eta_2; // lb/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_altitude_d_eta_2 = d2_pitching_moment_d_altitude_d_eta_2
-        * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_altitude_d_eta_2; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_2.altitude = d2_pitching_moment_d_altitude_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to eta_3
-    let d2_pitching_moment_d_altitude_d_eta_3 = s.d_reference_force_d_altitude
-        * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_altitude_d_eta_3; // lb/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_altitude_d_eta_3 = d2_pitching_moment_d_altitude_d_eta_3
-        * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
+        + p.z_t * d2_thrust_d_altitude_d_eta_3; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_3.altitude = d2_pitching_moment_d_altitude_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_eta_2_velocity = d2_velocity_rate_d_velocity_d_eta_2;
-    hessian.velocity_by_eta_2_altitude = d2_velocity_rate_d_altitude_d_eta_2;
-    hessian.velocity_by_eta_2_alpha = d2_velocity_rate_d_alpha_d_eta_2;
-    hessian.gamma_by_eta_2_velocity = d2_force_turn_d_velocity_d_eta_2;
-    hessian.gamma_by_eta_2_altitude = d2_force_turn_d_altitude_d_eta_2;
-    hessian.gamma_by_eta_2_alpha = d2_force_turn_d_alpha_d_eta_2;
-    hessian.alpha_by_eta_2_velocity = -d2_force_turn_d_velocity_d_eta_2;
-    hessian.alpha_by_eta_2_altitude = -d2_force_turn_d_altitude_d_eta_2;
-    hessian.alpha_by_eta_2_alpha = -d2_force_turn_d_alpha_d_eta_2;
-    hessian.pitch_rate_by_eta_2_velocity = d2_pitch_acceleration_d_velocity_d_eta_2;
-    hessian.pitch_rate_by_eta_2_altitude = d2_pitch_acceleration_d_altitude_d_eta_2;
-    hessian.velocity_by_eta_3_velocity = d2_velocity_rate_d_velocity_d_eta_3;
-    hessian.velocity_by_eta_3_altitude = d2_velocity_rate_d_altitude_d_eta_3;
-    hessian.velocity_by_eta_3_alpha = d2_velocity_rate_d_alpha_d_eta_3;
-    hessian.gamma_by_eta_3_velocity = d2_force_turn_d_velocity_d_eta_3;
-    hessian.gamma_by_eta_3_altitude = d2_force_turn_d_altitude_d_eta_3;
-    hessian.gamma_by_eta_3_alpha = d2_force_turn_d_alpha_d_eta_3;
-    hessian.alpha_by_eta_3_velocity = -d2_force_turn_d_velocity_d_eta_3;
-    hessian.alpha_by_eta_3_altitude = -d2_force_turn_d_altitude_d_eta_3;
-    hessian.alpha_by_eta_3_alpha = -d2_force_turn_d_alpha_d_eta_3;
-    hessian.pitch_rate_by_eta_3_velocity = d2_pitch_acceleration_d_velocity_d_eta_3;
-    hessian.pitch_rate_by_eta_3_altitude = d2_pitch_acceleration_d_altitude_d_eta_3;
+    hessian.alpha.eta_2.velocity = -hessian.gamma.eta_2.velocity;
+    hessian.alpha.eta_2.altitude = -hessian.gamma.eta_2.altitude;
+    hessian.alpha.eta_2.alpha = -hessian.gamma.eta_2.alpha;
+    hessian.alpha.eta_3.velocity = -hessian.gamma.eta_3.velocity;
+    hessian.alpha.eta_3.altitude = -hessian.gamma.eta_3.altitude;
+    hessian.alpha.eta_3.alpha = -hessian.gamma.eta_3.alpha;
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
@@ -436,11 +279,7 @@ fn hessian_by_eta_2_eta_3<R: Real>(
 ///
 /// 401 operations: 105 additions, 291 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn hessian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> HessianEntries<R> {
+pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);

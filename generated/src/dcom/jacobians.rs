@@ -3,264 +3,163 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
-    drift_from, intermediates, slopes,
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian, drift_from, intermediates, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`StateJacobian`].
-    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
-        velocity_by_velocity: velocity.velocity,
-        velocity_by_altitude: velocity.altitude,
-        velocity_by_gamma: velocity.gamma,
-        velocity_by_alpha: velocity.alpha,
-        velocity_by_eta_1: velocity.eta_1,
-        velocity_by_eta_2: velocity.eta_2,
-        velocity_by_eta_3: velocity.eta_3,
-        altitude_by_velocity: altitude.velocity,
-        altitude_by_gamma: altitude.gamma,
-        gamma_by_velocity: gamma.velocity,
-        gamma_by_altitude: gamma.altitude,
-        gamma_by_gamma: gamma.gamma,
-        gamma_by_alpha: gamma.alpha,
-        gamma_by_eta_1: gamma.eta_1,
-        gamma_by_eta_2: gamma.eta_2,
-        gamma_by_eta_3: gamma.eta_3,
-        alpha_by_velocity: alpha.velocity,
-        alpha_by_altitude: alpha.altitude,
-        alpha_by_gamma: alpha.gamma,
-        alpha_by_alpha: alpha.alpha,
-        alpha_by_pitch_rate: alpha.pitch_rate,
-        alpha_by_eta_1: alpha.eta_1,
-        alpha_by_eta_2: alpha.eta_2,
-        alpha_by_eta_3: alpha.eta_3,
-        pitch_rate_by_velocity: pitch_rate.velocity,
-        pitch_rate_by_altitude: pitch_rate.altitude,
-        pitch_rate_by_alpha: pitch_rate.alpha,
-        pitch_rate_by_eta_1: pitch_rate.eta_1,
-        pitch_rate_by_eta_2: pitch_rate.eta_2,
-        pitch_rate_by_eta_3: pitch_rate.eta_3,
-        eta_1_by_eta_dot_1: eta_1.eta_dot_1,
-        eta_dot_1_by_velocity: eta_dot_1.velocity,
-        eta_dot_1_by_altitude: eta_dot_1.altitude,
-        eta_dot_1_by_alpha: eta_dot_1.alpha,
-        eta_dot_1_by_eta_1: eta_dot_1.eta_1,
-        eta_dot_1_by_eta_dot_1: eta_dot_1.eta_dot_1,
-        eta_2_by_eta_dot_2: eta_2.eta_dot_2,
-        eta_dot_2_by_velocity: eta_dot_2.velocity,
-        eta_dot_2_by_altitude: eta_dot_2.altitude,
-        eta_dot_2_by_alpha: eta_dot_2.alpha,
-        eta_dot_2_by_eta_2: eta_dot_2.eta_2,
-        eta_dot_2_by_eta_dot_2: eta_dot_2.eta_dot_2,
-        eta_3_by_eta_dot_3: eta_3.eta_dot_3,
-        eta_dot_3_by_velocity: eta_dot_3.velocity,
-        eta_dot_3_by_altitude: eta_dot_3.altitude,
-        eta_dot_3_by_alpha: eta_dot_3.alpha,
-        eta_dot_3_by_eta_3: eta_dot_3.eta_3,
-        eta_dot_3_by_eta_dot_3: eta_dot_3.eta_dot_3,
+    pub struct StateJacobianEntries in state_jacobian_entries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity { velocity, altitude, gamma, alpha, eta_1, eta_2, eta_3 }
+        altitude { velocity, gamma }
+        gamma { velocity, altitude, gamma, alpha, eta_1, eta_2, eta_3 }
+        alpha { velocity, altitude, gamma, alpha, pitch_rate, eta_1, eta_2, eta_3 }
+        pitch_rate { velocity, altitude, alpha, eta_1, eta_2, eta_3 }
+        eta_1 { eta_dot_1 }
+        eta_dot_1 { velocity, altitude, alpha, eta_1, eta_dot_1 }
+        eta_2 { eta_dot_2 }
+        eta_dot_2 { velocity, altitude, alpha, eta_2, eta_dot_2 }
+        eta_3 { eta_dot_3 }
+        eta_dot_3 { velocity, altitude, alpha, eta_3, eta_dot_3 }
     }
 }
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`InputJacobian`].
-    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
-        velocity_by_phi: velocity.phi,
-        velocity_by_delta_e: velocity.delta_e,
-        velocity_by_delta_c: velocity.delta_c,
-        gamma_by_phi: gamma.phi,
-        gamma_by_delta_e: gamma.delta_e,
-        gamma_by_delta_c: gamma.delta_c,
-        alpha_by_phi: alpha.phi,
-        alpha_by_delta_e: alpha.delta_e,
-        alpha_by_delta_c: alpha.delta_c,
-        pitch_rate_by_phi: pitch_rate.phi,
-        pitch_rate_by_delta_e: pitch_rate.delta_e,
-        pitch_rate_by_delta_c: pitch_rate.delta_c,
-        eta_dot_1_by_delta_e: eta_dot_1.delta_e,
-        eta_dot_1_by_delta_c: eta_dot_1.delta_c,
-        eta_dot_2_by_delta_e: eta_dot_2.delta_e,
-        eta_dot_2_by_delta_c: eta_dot_2.delta_c,
-        eta_dot_3_by_delta_e: eta_dot_3.delta_e,
-        eta_dot_3_by_delta_c: eta_dot_3.delta_c,
+    pub struct InputJacobianEntries in input_jacobian_entries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity { phi, delta_e, delta_c }
+        gamma { phi, delta_e, delta_c }
+        alpha { phi, delta_e, delta_c }
+        pitch_rate { phi, delta_e, delta_c }
+        eta_dot_1 { delta_e, delta_c }
+        eta_dot_2 { delta_e, delta_c }
+        eta_dot_3 { delta_e, delta_c }
     }
 }
 
 /// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, eta_1, eta_2.
 #[inline(always)]
 fn jacobians_by_velocity_to_eta_2<R: Real>(
-    state: &mut StateJacobianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
-    let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity
-        - d_drag_d_velocity; // lb*s/ft^2
-    let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
+    let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
+    state.velocity.velocity = d_path_force_d_velocity * p.inv_m; // 1/s
     let d_force_turn_d_velocity = i.normal_coefficient * s.d_turn_factor_d_velocity; // rad/ft
-    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
+    state.gamma.velocity = d_force_turn_d_velocity - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar * i.c_m * s.d_reference_force_d_velocity
         + p.z_t * s.d_thrust_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
-    let d_generalized_force_1_d_velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_2_d_velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    let d_generalized_force_3_d_velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    state.eta_dot_1.velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    state.eta_dot_2.velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    state.eta_dot_3.velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
 
     // Derivatives with respect to altitude
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
-    let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude
-        - d_drag_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
+    let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
+    state.velocity.altitude = d_path_force_d_altitude * p.inv_m
         - i.sin_gamma * s.d_gravity_d_altitude; // 1/s^2
     let d_force_turn_d_altitude = i.normal_coefficient * s.d_turn_factor_d_altitude; // rad/s/ft
-    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
+    state.gamma.altitude = d_force_turn_d_altitude - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = p.c_bar * i.c_m * s.d_reference_force_d_altitude
         + p.z_t * s.d_thrust_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    state.eta_dot_1.altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    state.eta_dot_2.altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    state.eta_dot_3.altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
 
     // Derivatives with respect to eta_1
     let d_path_force_d_eta_1 = i.reference_force * (s.cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_1 = i.turn_factor * s.d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_1 = i.reference_force
-        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+    state.velocity.eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    state.gamma.eta_1 = i.turn_factor * s.d_normal_coefficient_d_eta_1; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_1 = i.reference_force * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
+    state.pitch_rate.eta_1 = d_pitching_moment_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to eta_2
     let d_path_force_d_eta_2 = i.reference_force * (s.cos_alpha_c_t_eta_2 - p.c_d_eta_2); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_2 = i.turn_factor * s.d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_2 = i.reference_force
-        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+    state.velocity.eta_2 = d_path_force_d_eta_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    state.gamma.eta_2 = i.turn_factor * s.d_normal_coefficient_d_eta_2; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_2 = i.reference_force * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
+    state.pitch_rate.eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    state.velocity_by_velocity = d_velocity_rate_d_velocity;
-    state.altitude_by_velocity = i.sin_gamma;
-    state.gamma_by_velocity = d_gamma_rate_d_velocity;
-    state.alpha_by_velocity = -d_gamma_rate_d_velocity;
-    state.pitch_rate_by_velocity = d_pitch_acceleration_d_velocity;
-    state.eta_dot_1_by_velocity = d_generalized_force_1_d_velocity;
-    state.eta_dot_2_by_velocity = d_generalized_force_2_d_velocity;
-    state.eta_dot_3_by_velocity = d_generalized_force_3_d_velocity;
-    state.velocity_by_altitude = d_velocity_rate_d_altitude;
-    state.gamma_by_altitude = d_gamma_rate_d_altitude;
-    state.alpha_by_altitude = -d_gamma_rate_d_altitude;
-    state.pitch_rate_by_altitude = d_pitch_acceleration_d_altitude;
-    state.eta_dot_1_by_altitude = d_generalized_force_1_d_altitude;
-    state.eta_dot_2_by_altitude = d_generalized_force_2_d_altitude;
-    state.eta_dot_3_by_altitude = d_generalized_force_3_d_altitude;
-    state.velocity_by_gamma = s.d_velocity_rate_d_gamma;
-    state.altitude_by_gamma = s.d_altitude_rate_d_gamma;
-    state.gamma_by_gamma = s.d_gamma_rate_d_gamma;
-    state.alpha_by_gamma = -s.d_gamma_rate_d_gamma;
-    state.velocity_by_alpha = s.d_velocity_rate_d_alpha;
-    state.gamma_by_alpha = s.d_force_turn_d_alpha;
-    state.alpha_by_alpha = -s.d_force_turn_d_alpha;
-    state.pitch_rate_by_alpha = s.d_pitch_acceleration_d_alpha;
-    state.eta_dot_1_by_alpha = s.d_generalized_force_1_d_alpha;
-    state.eta_dot_2_by_alpha = s.d_generalized_force_2_d_alpha;
-    state.eta_dot_3_by_alpha = s.d_generalized_force_3_d_alpha;
-    state.velocity_by_eta_1 = d_velocity_rate_d_eta_1;
-    state.gamma_by_eta_1 = d_force_turn_d_eta_1;
-    state.alpha_by_eta_1 = -d_force_turn_d_eta_1;
-    state.pitch_rate_by_eta_1 = d_pitch_acceleration_d_eta_1;
-    state.eta_dot_1_by_eta_1 = p.minus_stiffness_1;
-    state.velocity_by_eta_2 = d_velocity_rate_d_eta_2;
-    state.gamma_by_eta_2 = d_force_turn_d_eta_2;
-    state.alpha_by_eta_2 = -d_force_turn_d_eta_2;
-    state.pitch_rate_by_eta_2 = d_pitch_acceleration_d_eta_2;
-    state.eta_dot_2_by_eta_2 = p.minus_stiffness_2;
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+    state.alpha.altitude = -state.gamma.altitude;
+    state.velocity.gamma = s.d_velocity_rate_d_gamma;
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.gamma.gamma = s.d_gamma_rate_d_gamma;
+    state.alpha.gamma = -s.d_gamma_rate_d_gamma;
+    state.velocity.alpha = s.d_velocity_rate_d_alpha;
+    state.gamma.alpha = s.d_force_turn_d_alpha;
+    state.alpha.alpha = -s.d_force_turn_d_alpha;
+    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
+    state.eta_dot_1.alpha = s.d_generalized_force_1_d_alpha;
+    state.eta_dot_2.alpha = s.d_generalized_force_2_d_alpha;
+    state.eta_dot_3.alpha = s.d_generalized_force_3_d_alpha;
+    state.alpha.eta_1 = -state.gamma.eta_1;
+    state.eta_dot_1.eta_1 = p.minus_stiffness_1;
+    state.alpha.eta_2 = -state.gamma.eta_2;
+    state.eta_dot_2.eta_2 = p.minus_stiffness_2;
 }
 
 /// Entries of [`jacobians_values`]: derivatives by eta_3, pitch_rate, eta_dot_1, eta_dot_2, eta_dot_3, phi,
 /// delta_e, delta_c.
 #[inline(always)]
 fn jacobians_by_eta_3_to_delta_c<R: Real>(
-    state: &mut StateJacobianEntries<R>,
-    input: &mut InputJacobianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to eta_3
     let d_path_force_d_eta_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
-    let d_velocity_rate_d_eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
-    let d_force_turn_d_eta_3 = i.turn_factor * s.d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_eta_3 = i.reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
-    let d_pitch_acceleration_d_eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
+    state.velocity.eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
+    state.gamma.eta_3 = i.turn_factor * s.d_normal_coefficient_d_eta_3; // rad/s/ft^0.5/slug^0.5
+    let d_pitching_moment_d_eta_3 = i.reference_force * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
+    state.pitch_rate.eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
-    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+    input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
     // Derivatives with respect to delta_e
     let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * i.reference_force; // lb/rad
-    let d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+    input.eta_dot_1.delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_2.delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_3.delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
 
     // Derivatives with respect to delta_c
-    let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command
-        * i.reference_force; // lb/rad
-    let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-    let d_generalized_force_1_d_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command * i.reference_force; // lb/rad
+    input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
+    input.eta_dot_1.delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_2.delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_3.delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
 
-    state.velocity_by_eta_3 = d_velocity_rate_d_eta_3;
-    state.gamma_by_eta_3 = d_force_turn_d_eta_3;
-    state.alpha_by_eta_3 = -d_force_turn_d_eta_3;
-    state.pitch_rate_by_eta_3 = d_pitch_acceleration_d_eta_3;
-    state.eta_dot_3_by_eta_3 = p.minus_stiffness_3;
-    state.alpha_by_pitch_rate = R::ONE;
-    state.eta_1_by_eta_dot_1 = R::ONE;
-    state.eta_dot_1_by_eta_dot_1 = p.minus_damping_1;
-    state.eta_2_by_eta_dot_2 = R::ONE;
-    state.eta_dot_2_by_eta_dot_2 = p.minus_damping_2;
-    state.eta_3_by_eta_dot_3 = R::ONE;
-    state.eta_dot_3_by_eta_dot_3 = p.minus_damping_3;
-    input.velocity_by_phi = s.d_velocity_rate_d_phi;
-    input.gamma_by_phi = s.d_force_turn_d_phi;
-    input.alpha_by_phi = -s.d_force_turn_d_phi;
-    input.pitch_rate_by_phi = d_pitch_acceleration_d_phi;
-    input.velocity_by_delta_e = s.d_velocity_rate_d_delta_e;
-    input.gamma_by_delta_e = s.d_force_turn_d_delta_e;
-    input.alpha_by_delta_e = -s.d_force_turn_d_delta_e;
-    input.pitch_rate_by_delta_e = d_pitch_acceleration_d_delta_e;
-    input.eta_dot_1_by_delta_e = d_generalized_force_1_d_delta_e;
-    input.eta_dot_2_by_delta_e = d_generalized_force_2_d_delta_e;
-    input.eta_dot_3_by_delta_e = d_generalized_force_3_d_delta_e;
-    input.velocity_by_delta_c = s.d_velocity_rate_d_delta_c;
-    input.gamma_by_delta_c = s.d_force_turn_d_delta_c;
-    input.alpha_by_delta_c = -s.d_force_turn_d_delta_c;
-    input.pitch_rate_by_delta_c = d_pitch_acceleration_d_delta_c;
-    input.eta_dot_1_by_delta_c = d_generalized_force_1_d_delta_c;
-    input.eta_dot_2_by_delta_c = d_generalized_force_2_d_delta_c;
-    input.eta_dot_3_by_delta_c = d_generalized_force_3_d_delta_c;
+    state.alpha.eta_3 = -state.gamma.eta_3;
+    state.eta_dot_3.eta_3 = p.minus_stiffness_3;
+    state.alpha.pitch_rate = R::ONE;
+    state.eta_1.eta_dot_1 = R::ONE;
+    state.eta_dot_1.eta_dot_1 = p.minus_damping_1;
+    state.eta_2.eta_dot_2 = R::ONE;
+    state.eta_dot_2.eta_dot_2 = p.minus_damping_2;
+    state.eta_3.eta_dot_3 = R::ONE;
+    state.eta_dot_3.eta_dot_3 = p.minus_damping_3;
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.alpha.phi = -s.d_force_turn_d_phi;
+    input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
+    input.gamma.delta_e = s.d_force_turn_d_delta_e;
+    input.alpha.delta_e = -s.d_force_turn_d_delta_e;
+    input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
+    input.gamma.delta_c = s.d_force_turn_d_delta_c;
+    input.alpha.delta_c = -s.d_force_turn_d_delta_c;
 }
 
 /// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
@@ -276,9 +175,7 @@ pub fn jacobians_values_from<R: Real>(
 /// 275 operations: 82 additions, 188 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -287,11 +184,7 @@ pub fn jacobians_values<R: Real>(
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 #[inline(always)]
-pub fn jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (StateJacobian<R>, InputJacobian<R>) {
+pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
     (state.dense(), input.dense())
 }
@@ -304,9 +197,7 @@ pub fn jacobians<R: Real>(
 /// 306 operations: 93 additions, 208 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -319,9 +210,7 @@ pub fn drift_and_jacobians_values<R: Real>(
 /// for less than one after the other, eq. (1).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
     (drift, state.dense(), input.dense())

@@ -11,8 +11,7 @@ use ahv_core::Real;
 /// 67 operations: 24 additions, 39 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.velocity_rate
+    intermediates(x, u, p).velocity_rate
 }
 
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (1).
@@ -34,8 +33,7 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
 /// 58 operations: 21 additions, 32 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.gamma_rate
+    intermediates(x, u, p).gamma_rate
 }
 
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (1).
@@ -57,8 +55,7 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
 /// 2 operations: 1 multiplication, 1 sin_cos.
 #[inline(always)]
 pub fn L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.altitude_rate
+    intermediates(x, u, p).altitude_rate
 }
 
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (1). Unit: ft/s^2.
@@ -68,8 +65,6 @@ pub fn L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-
-    // Lie derivatives, (1)
     i.sin_gamma * i.velocity_rate + s.d_altitude_rate_d_gamma * i.gamma_rate
 }
 

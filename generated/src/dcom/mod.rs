@@ -39,55 +39,33 @@ pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, NoiseClass, Pattern, Real, Vector};
 
-/// State of DCOM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct State<T> {
-    /// Velocity, ft/s.
-    pub velocity: T,
-    /// Altitude, ft.
-    pub altitude: T,
-    /// Flight-path angle, rad.
-    pub gamma: T,
-    /// Angle of attack, rad.
-    pub alpha: T,
-    /// Pitch rate, rad/s.
-    pub pitch_rate: T,
-    /// Flexible generalized coordinate of mode 1, (ft*slug)^0.5.
-    pub eta_1: T,
-    /// Rate of the flexible generalized coordinate of mode 1, (ft*slug)^0.5/s.
-    pub eta_dot_1: T,
-    /// Flexible generalized coordinate of mode 2, (ft*slug)^0.5.
-    pub eta_2: T,
-    /// Rate of the flexible generalized coordinate of mode 2, (ft*slug)^0.5/s.
-    pub eta_dot_2: T,
-    /// Flexible generalized coordinate of mode 3, (ft*slug)^0.5.
-    pub eta_3: T,
-    /// Rate of the flexible generalized coordinate of mode 3, (ft*slug)^0.5/s.
-    pub eta_dot_3: T,
-}
-
-ahv_core::impl_vector! {
-    State {
+ahv_core::vector! {
+    /// State of DCOM.
+    pub struct State<T> {
+        /// Velocity, ft/s.
         velocity: ["ft/s", "m/s", 0.3048],
+        /// Altitude, ft.
         altitude: ["ft", "m", 0.3048],
+        /// Flight-path angle, rad.
         gamma: ["rad", "rad", 1.0],
+        /// Angle of attack, rad.
         alpha: ["rad", "rad", 1.0],
+        /// Pitch rate, rad/s.
         pitch_rate: ["rad/s", "rad/s", 1.0],
+        /// Flexible generalized coordinate of mode 1, (ft*slug)^0.5.
         eta_1: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Rate of the flexible generalized coordinate of mode 1, (ft*slug)^0.5/s.
         eta_dot_1: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
+        /// Flexible generalized coordinate of mode 2, (ft*slug)^0.5.
         eta_2: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Rate of the flexible generalized coordinate of mode 2, (ft*slug)^0.5/s.
         eta_dot_2: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
+        /// Flexible generalized coordinate of mode 3, (ft*slug)^0.5.
         eta_3: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Rate of the flexible generalized coordinate of mode 3, (ft*slug)^0.5/s.
         eta_dot_3: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, State);
 
 /// Where the curve fits are meant to be used.
 pub const STATE_BOUNDS: State<Bounds> = State {
@@ -104,31 +82,17 @@ pub const STATE_BOUNDS: State<Bounds> = State {
     eta_dot_3: VALIDITY.eta_dot,
 };
 
-/// Input of DCOM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Input<T> {
-    /// Fuel equivalence ratio, dimensionless.
-    pub phi: T,
-    /// Elevator deflection, rad.
-    pub delta_e: T,
-    /// Canard deflection, rad.
-    pub delta_c: T,
-}
-
-ahv_core::impl_vector! {
-    Input {
+ahv_core::vector! {
+    /// Input of DCOM.
+    pub struct Input<T> {
+        /// Fuel equivalence ratio, dimensionless.
         phi: ["1", "1", 1.0],
+        /// Elevator deflection, rad.
         delta_e: ["rad", "rad", 1.0],
+        /// Canard deflection, rad.
         delta_c: ["rad", "rad", 1.0],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Input);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Input);
 
 /// Where the curve fits are meant to be used.
 pub const INPUT_BOUNDS: Input<Bounds> = Input {
@@ -137,108 +101,66 @@ pub const INPUT_BOUNDS: Input<Bounds> = Input {
     delta_c: VALIDITY.delta_c,
 };
 
-/// One value for each independent Wiener process of DCOM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Noise<T> {
-    /// Wiener increment that perturbs the flight-path angle, s^0.5.
-    pub w_gamma: T,
-    /// Wiener increment that perturbs the angle of attack, s^0.5.
-    pub w_alpha: T,
-    /// Wiener increment that perturbs the pitch rate, s^0.5.
-    pub w_q: T,
-    /// Wiener increment that drives flexible mode 1, s^0.5.
-    pub xi_1: T,
-    /// Wiener increment that drives flexible mode 2, s^0.5.
-    pub xi_2: T,
-    /// Wiener increment that drives flexible mode 3, s^0.5.
-    pub xi_3: T,
-}
-
-ahv_core::impl_vector! {
-    Noise {
+ahv_core::vector! {
+    /// One value for each independent Wiener process of DCOM.
+    pub struct Noise<T> {
+        /// Wiener increment that perturbs the flight-path angle, s^0.5.
         w_gamma: ["s^0.5", "s^0.5", 1.0],
+        /// Wiener increment that perturbs the angle of attack, s^0.5.
         w_alpha: ["s^0.5", "s^0.5", 1.0],
+        /// Wiener increment that perturbs the pitch rate, s^0.5.
         w_q: ["s^0.5", "s^0.5", 1.0],
+        /// Wiener increment that drives flexible mode 1, s^0.5.
         xi_1: ["s^0.5", "s^0.5", 1.0],
+        /// Wiener increment that drives flexible mode 2, s^0.5.
         xi_2: ["s^0.5", "s^0.5", 1.0],
+        /// Wiener increment that drives flexible mode 3, s^0.5.
         xi_3: ["s^0.5", "s^0.5", 1.0],
     }
 }
 
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Noise);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Noise);
-
-/// Quantities that people look at of DCOM.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Outputs<T> {
-    /// Pitch angle, rad.
-    pub theta: T,
-    /// Air density, slug/ft^3.
-    pub density: T,
-    /// Dynamic pressure, lb/ft^2.
-    pub dynamic_pressure: T,
-    /// Lift coefficient, dimensionless.
-    pub c_l: T,
-    /// Drag coefficient, dimensionless.
-    pub c_d: T,
-    /// Pitching-moment coefficient, dimensionless.
-    pub c_m: T,
-    /// Thrust coefficient, dimensionless.
-    pub c_t: T,
-    /// Thrust, lb/ft.
-    pub thrust: T,
-    /// Lift, lb/ft.
-    pub lift: T,
-    /// Drag, lb/ft.
-    pub drag: T,
-    /// Pitching moment, lb.
-    pub pitching_moment: T,
-    /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
-    pub c_n_1: T,
-    /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-    pub generalized_force_1: T,
-    /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
-    pub c_n_2: T,
-    /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-    pub generalized_force_2: T,
-    /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
-    pub c_n_3: T,
-    /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
-    pub generalized_force_3: T,
-}
-
-ahv_core::impl_vector! {
-    Outputs {
+ahv_core::vector! {
+    /// Quantities that people look at of DCOM.
+    pub struct Outputs<T> {
+        /// Pitch angle, rad.
         theta: ["rad", "rad", 1.0],
+        /// Air density, slug/ft^3.
         density: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        /// Dynamic pressure, lb/ft^2.
         dynamic_pressure: ["lb/ft^2", "N/m^2", 47.880258980335846],
+        /// Lift coefficient, dimensionless.
         c_l: ["1", "1", 1.0],
+        /// Drag coefficient, dimensionless.
         c_d: ["1", "1", 1.0],
+        /// Pitching-moment coefficient, dimensionless.
         c_m: ["1", "1", 1.0],
+        /// Thrust coefficient, dimensionless.
         c_t: ["1", "1", 1.0],
+        /// Thrust, lb/ft.
         thrust: ["lb/ft", "N/m", 14.593902937206364],
+        /// Lift, lb/ft.
         lift: ["lb/ft", "N/m", 14.593902937206364],
+        /// Drag, lb/ft.
         drag: ["lb/ft", "N/m", 14.593902937206364],
+        /// Pitching moment, lb.
         pitching_moment: ["lb", "N", 4.4482216152605],
+        /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
         c_n_1: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
         generalized_force_1: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
         c_n_2: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
         generalized_force_2: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
+        /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
         c_n_3: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
         generalized_force_3: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
     }
 }
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Outputs);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Outputs);
+ahv_core::impl_nalgebra!(State by State, Input, Noise, Outputs);
 
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
@@ -270,54 +192,12 @@ pub const NOISE_CLASS: Noise<NoiseClass> = Noise {
 
 /// Whether two columns of the diffusion commute: L^j b^k = L^k b^j.
 pub const NOISE_COMMUTES: Noise<Noise<bool>> = Noise {
-    w_gamma: Noise {
-        w_gamma: true,
-        w_alpha: false,
-        w_q: true,
-        xi_1: true,
-        xi_2: true,
-        xi_3: true,
-    },
-    w_alpha: Noise {
-        w_gamma: false,
-        w_alpha: true,
-        w_q: false,
-        xi_1: true,
-        xi_2: true,
-        xi_3: true,
-    },
-    w_q: Noise {
-        w_gamma: true,
-        w_alpha: false,
-        w_q: true,
-        xi_1: true,
-        xi_2: true,
-        xi_3: true,
-    },
-    xi_1: Noise {
-        w_gamma: true,
-        w_alpha: true,
-        w_q: true,
-        xi_1: true,
-        xi_2: true,
-        xi_3: true,
-    },
-    xi_2: Noise {
-        w_gamma: true,
-        w_alpha: true,
-        w_q: true,
-        xi_1: true,
-        xi_2: true,
-        xi_3: true,
-    },
-    xi_3: Noise {
-        w_gamma: true,
-        w_alpha: true,
-        w_q: true,
-        xi_1: true,
-        xi_2: true,
-        xi_3: true,
-    },
+    w_gamma: Noise { w_gamma: true, w_alpha: false, w_q: true, xi_1: true, xi_2: true, xi_3: true },
+    w_alpha: Noise { w_gamma: false, w_alpha: true, w_q: false, xi_1: true, xi_2: true, xi_3: true },
+    w_q: Noise { w_gamma: true, w_alpha: false, w_q: true, xi_1: true, xi_2: true, xi_3: true },
+    xi_1: Noise { w_gamma: true, w_alpha: true, w_q: true, xi_1: true, xi_2: true, xi_3: true },
+    xi_2: Noise { w_gamma: true, w_alpha: true, w_q: true, xi_1: true, xi_2: true, xi_3: true },
+    xi_3: Noise { w_gamma: true, w_alpha: true, w_q: true, xi_1: true, xi_2: true, xi_3: true },
 };
 
 /// DCOM with its parameters prepared.
@@ -330,9 +210,7 @@ pub struct Model<R> {
 impl<R: Real> Model<R> {
     /// The model for these parameters.
     pub fn new(parameters: &Parameters<R>) -> Self {
-        Self {
-            prepared: prepare(parameters),
-        }
+        Self { prepared: prepare(parameters) }
     }
 }
 
@@ -363,20 +241,12 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline(always)]
-    fn jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (StateJacobian<R>, InputJacobian<R>) {
+    fn jacobians(&self, x: &State<R>, u: &Input<R>) -> (StateJacobian<R>, InputJacobian<R>) {
         jacobians(x, u, &self.prepared)
     }
 
     #[inline(always)]
-    fn drift_and_jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    fn drift_and_jacobians(&self, x: &State<R>, u: &Input<R>) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }
@@ -390,12 +260,7 @@ impl<R: Real> ahv_core::StochasticModel for Model<R> {
     }
 
     #[inline(always)]
-    fn drift_and_noise_increment(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-        dw: &Noise<R>,
-    ) -> (State<R>, State<R>) {
+    fn drift_and_noise_increment(&self, x: &State<R>, u: &Input<R>, dw: &Noise<R>) -> (State<R>, State<R>) {
         drift_and_noise_increment(x, u, &self.prepared, dw)
     }
 
@@ -419,17 +284,11 @@ impl<R: Real> ahv_core::ItoCorrected for Model<R> {
 
 impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
     #[inline(always)]
-    fn iterated_increment(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-        mut integral: impl FnMut(usize, usize) -> R,
-    ) -> State<R> {
+    fn iterated_increment(&self, x: &State<R>, u: &Input<R>, mut integral: impl FnMut(usize, usize) -> R) -> State<R> {
         let values = noise_derivatives_values(x, u, &self.prepared);
         let mut sum = State::splat(R::ZERO).to_array();
         for (value, &[row, j, k]) in values
-            .to_array()
-            .into_iter()
+            .to_array().into_iter()
             .zip(NOISE_DERIVATIVES_PATTERN.at)
         {
             if let Some(component) = sum.get_mut(row) {

@@ -2,44 +2,20 @@
 
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
-use super::{
-    Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates, slopes,
-};
-
+use super::{Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`NoiseDerivatives`].
-    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
-        velocity_by_w_gamma_w_gamma: velocity.w_gamma.w_gamma,
-        velocity_by_w_gamma_w_alpha: velocity.w_gamma.w_alpha,
-        velocity_by_w_alpha_w_gamma: velocity.w_alpha.w_gamma,
-        velocity_by_w_alpha_w_alpha: velocity.w_alpha.w_alpha,
-        velocity_by_w_q_w_alpha: velocity.w_q.w_alpha,
-        altitude_by_w_gamma_w_gamma: altitude.w_gamma.w_gamma,
-        altitude_by_w_alpha_w_gamma: altitude.w_alpha.w_gamma,
-        gamma_by_w_gamma_w_gamma: gamma.w_gamma.w_gamma,
-        gamma_by_w_gamma_w_alpha: gamma.w_gamma.w_alpha,
-        gamma_by_w_alpha_w_gamma: gamma.w_alpha.w_gamma,
-        gamma_by_w_alpha_w_alpha: gamma.w_alpha.w_alpha,
-        gamma_by_w_q_w_alpha: gamma.w_q.w_alpha,
-        alpha_by_w_gamma_w_gamma: alpha.w_gamma.w_gamma,
-        alpha_by_w_gamma_w_alpha: alpha.w_gamma.w_alpha,
-        alpha_by_w_alpha_w_gamma: alpha.w_alpha.w_gamma,
-        alpha_by_w_alpha_w_alpha: alpha.w_alpha.w_alpha,
-        alpha_by_w_q_w_alpha: alpha.w_q.w_alpha,
-        pitch_rate_by_w_gamma_w_alpha: pitch_rate.w_gamma.w_alpha,
-        pitch_rate_by_w_alpha_w_alpha: pitch_rate.w_alpha.w_alpha,
-        pitch_rate_by_w_q_w_alpha: pitch_rate.w_q.w_alpha,
-        eta_dot_1_by_w_gamma_w_alpha: eta_dot_1.w_gamma.w_alpha,
-        eta_dot_1_by_w_alpha_w_alpha: eta_dot_1.w_alpha.w_alpha,
-        eta_dot_1_by_w_q_w_alpha: eta_dot_1.w_q.w_alpha,
-        eta_dot_2_by_w_gamma_w_alpha: eta_dot_2.w_gamma.w_alpha,
-        eta_dot_2_by_w_alpha_w_alpha: eta_dot_2.w_alpha.w_alpha,
-        eta_dot_2_by_w_q_w_alpha: eta_dot_2.w_q.w_alpha,
-        eta_dot_3_by_w_gamma_w_alpha: eta_dot_3.w_gamma.w_alpha,
-        eta_dot_3_by_w_alpha_w_alpha: eta_dot_3.w_alpha.w_alpha,
-        eta_dot_3_by_w_q_w_alpha: eta_dot_3.w_q.w_alpha,
+    pub struct NoiseDerivativesEntries in noise_derivatives_entries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
+        velocity { w_gamma { w_gamma, w_alpha } w_alpha { w_gamma, w_alpha } w_q { w_alpha } }
+        altitude { w_gamma { w_gamma } w_alpha { w_gamma } }
+        gamma { w_gamma { w_gamma, w_alpha } w_alpha { w_gamma, w_alpha } w_q { w_alpha } }
+        alpha { w_gamma { w_gamma, w_alpha } w_alpha { w_gamma, w_alpha } w_q { w_alpha } }
+        pitch_rate { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
+        eta_dot_1 { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
+        eta_dot_2 { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
+        eta_dot_3 { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
     }
 }
 
@@ -49,117 +25,102 @@ ahv_core::entries! {
 ///
 /// 271 operations: 71 additions, 195 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn noise_derivatives_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivativesEntries<R> {
+pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
+    let mut noise_derivatives = NoiseDerivativesEntries::splat(R::ZERO);
     let noise_derivatives_term_1 = h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_gamma
         + h.d2_gamma_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
         + h.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = h
-        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = h
-        .d2_force_turn_d_altitude_d_alpha * s.d_altitude_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = h
-        .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = h.d2_gamma_rate_d_velocity_d_gamma
-        * s.d_velocity_rate_d_alpha
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = h.d2_force_turn_d_velocity_d_alpha
+        * s.d_velocity_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = h.d2_force_turn_d_altitude_d_alpha
+        * s.d_altitude_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = h.d2_force_turn_d_alpha_d_alpha
+        * s.d_gamma_rate_d_gamma;
+    let noise_derivatives_term_2 = h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_alpha
         + h.d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
-    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h
-        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h
-        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h.d2_force_turn_d_velocity_d_alpha
+        * s.d_velocity_rate_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h.d2_force_turn_d_alpha_d_alpha
+        * s.d_force_turn_d_alpha;
 
-    NoiseDerivativesEntries {
-        velocity_by_w_gamma_w_gamma: p.w_gamma_2
-            * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
-                + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
-        velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_velocity_rate_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        velocity_by_w_alpha_w_gamma: p.w_alpha_w_gamma
-            * h.d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
-        velocity_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        velocity_by_w_q_w_alpha: p.w_alpha_w_q * h.d2_velocity_rate_d_alpha_d_alpha,
-        altitude_by_w_gamma_w_gamma: p.w_gamma_2
-            * (i.cos_gamma * s.d_velocity_rate_d_gamma
-                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
-        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma
-            * (i.cos_gamma * s.d_velocity_rate_d_alpha
-                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
-        gamma_by_w_gamma_w_gamma: p.w_gamma_2 * noise_derivatives_term_1,
-        gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
-                + d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
-                - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
-        gamma_by_w_alpha_w_gamma: p.w_alpha_w_gamma * noise_derivatives_term_2,
-        gamma_by_w_alpha_w_alpha: p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
-                - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
-        gamma_by_w_q_w_alpha: p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha,
-        alpha_by_w_gamma_w_gamma: -p.w_gamma_2 * noise_derivatives_term_1,
-        alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
-                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
-                - d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma),
-        alpha_by_w_alpha_w_gamma: -p.w_alpha_w_gamma * noise_derivatives_term_2,
-        alpha_by_w_alpha_w_alpha: p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
-                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha),
-        alpha_by_w_q_w_alpha: -p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha,
-        pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_pitch_acceleration_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        pitch_rate_by_w_q_w_alpha: p.w_alpha_w_q
-            * h.d2_pitch_acceleration_d_alpha_d_alpha,
-        eta_dot_1_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_generalized_force_1_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        eta_dot_1_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        eta_dot_1_by_w_q_w_alpha: p.w_alpha_w_q
-            * h.d2_generalized_force_1_d_alpha_d_alpha,
-        eta_dot_2_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_generalized_force_2_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        eta_dot_2_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        eta_dot_2_by_w_q_w_alpha: p.w_alpha_w_q
-            * h.d2_generalized_force_2_d_alpha_d_alpha,
-        eta_dot_3_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_generalized_force_3_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        eta_dot_3_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        eta_dot_3_by_w_q_w_alpha: p.w_alpha_w_q
-            * h.d2_generalized_force_3_d_alpha_d_alpha,
-    }
+    noise_derivatives.velocity.w_gamma.w_gamma = p.w_gamma_2
+        * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
+            + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+    noise_derivatives.velocity.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_velocity_rate_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.velocity.w_alpha.w_gamma = p.w_alpha_w_gamma * h.d2_velocity_rate_d_gamma_d_gamma
+        * s.d_force_turn_d_alpha;
+    noise_derivatives.velocity.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.velocity.w_q.w_alpha = p.w_alpha_w_q * h.d2_velocity_rate_d_alpha_d_alpha;
+    noise_derivatives.altitude.w_gamma.w_gamma = p.w_gamma_2
+        * (i.cos_gamma * s.d_velocity_rate_d_gamma + h.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+    noise_derivatives.altitude.w_alpha.w_gamma = p.w_alpha_w_gamma
+        * (i.cos_gamma * s.d_velocity_rate_d_alpha + h.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha);
+    noise_derivatives.gamma.w_gamma.w_gamma = p.w_gamma_2 * noise_derivatives_term_1;
+    noise_derivatives.gamma.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+            + d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
+            - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma);
+    noise_derivatives.gamma.w_alpha.w_gamma = p.w_alpha_w_gamma * noise_derivatives_term_2;
+    noise_derivatives.gamma.w_alpha.w_alpha = p.w_alpha_2
+        * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
+            - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha);
+    noise_derivatives.gamma.w_q.w_alpha = p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha;
+    noise_derivatives.alpha.w_gamma.w_gamma = -p.w_gamma_2 * noise_derivatives_term_1;
+    noise_derivatives.alpha.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
+            - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+            - d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma);
+    noise_derivatives.alpha.w_alpha.w_gamma = -p.w_alpha_w_gamma * noise_derivatives_term_2;
+    noise_derivatives.alpha.w_alpha.w_alpha = p.w_alpha_2
+        * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+            - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha);
+    noise_derivatives.alpha.w_q.w_alpha = -p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha;
+    noise_derivatives.pitch_rate.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_pitch_acceleration_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.pitch_rate.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.pitch_rate.w_q.w_alpha = p.w_alpha_w_q * h.d2_pitch_acceleration_d_alpha_d_alpha;
+    noise_derivatives.eta_dot_1.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_generalized_force_1_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.eta_dot_1.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_generalized_force_1_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_generalized_force_1_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.eta_dot_1.w_q.w_alpha = p.w_alpha_w_q * h.d2_generalized_force_1_d_alpha_d_alpha;
+    noise_derivatives.eta_dot_2.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_generalized_force_2_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.eta_dot_2.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_generalized_force_2_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_generalized_force_2_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.eta_dot_2.w_q.w_alpha = p.w_alpha_w_q * h.d2_generalized_force_2_d_alpha_d_alpha;
+    noise_derivatives.eta_dot_3.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_generalized_force_3_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.eta_dot_3.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_generalized_force_3_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_generalized_force_3_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.eta_dot_3.w_q.w_alpha = p.w_alpha_w_q * h.d2_generalized_force_3_d_alpha_d_alpha;
+    noise_derivatives
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (17).
 #[inline(always)]
-pub fn noise_derivatives<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivatives<R> {
+pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivatives<R> {
     noise_derivatives_values(x, u, p).dense()
 }
 
@@ -176,10 +137,10 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         * (h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_gamma
             + h.d2_gamma_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
             + h.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
-    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h
-        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h
-        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h.d2_force_turn_d_velocity_d_alpha
+        * s.d_velocity_rate_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h.d2_force_turn_d_alpha_d_alpha
+        * s.d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2

@@ -3,248 +3,103 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Curvatures, Input, Intermediates, ParameterJacobian, Parameters, Prepared,
-    Sensitivities, Slopes, State, curvatures, intermediates, sensitivities, slopes,
+    Curvatures, Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes, State, curvatures,
+    intermediates, sensitivities, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity_by_m: velocity.m,
-        velocity_by_s: velocity.s,
-        velocity_by_rho_0: velocity.rho_0,
-        velocity_by_h_0: velocity.h_0,
-        velocity_by_h_s: velocity.h_s,
-        velocity_by_g: velocity.g,
-        velocity_by_r_e: velocity.r_e,
-        velocity_by_canard_command: velocity.canard_command,
-        velocity_by_canard_slaving: velocity.canard_slaving,
-        velocity_by_spherical_earth: velocity.spherical_earth,
-        velocity_by_c_t_phi_alpha_3: velocity.c_t_phi_alpha_3,
-        velocity_by_c_t_phi_alpha_2: velocity.c_t_phi_alpha_2,
-        velocity_by_c_t_phi_alpha: velocity.c_t_phi_alpha,
-        velocity_by_c_t_phi: velocity.c_t_phi,
-        velocity_by_c_t_alpha_3: velocity.c_t_alpha_3,
-        velocity_by_c_t_alpha_2: velocity.c_t_alpha_2,
-        velocity_by_c_t_alpha: velocity.c_t_alpha,
-        velocity_by_c_t_0: velocity.c_t_0,
-        velocity_by_c_t_eta_1: velocity.c_t_eta_1,
-        velocity_by_c_t_eta_2: velocity.c_t_eta_2,
-        velocity_by_c_t_eta_3: velocity.c_t_eta_3,
-        velocity_by_c_l_delta_e: velocity.c_l_delta_e,
-        velocity_by_c_l_delta_c: velocity.c_l_delta_c,
-        velocity_by_c_d_alpha_2: velocity.c_d_alpha_2,
-        velocity_by_c_d_alpha: velocity.c_d_alpha,
-        velocity_by_c_d_delta_e_2: velocity.c_d_delta_e_2,
-        velocity_by_c_d_delta_e: velocity.c_d_delta_e,
-        velocity_by_c_d_delta_c_2: velocity.c_d_delta_c_2,
-        velocity_by_c_d_delta_c: velocity.c_d_delta_c,
-        velocity_by_c_d_0: velocity.c_d_0,
-        velocity_by_c_d_eta_1: velocity.c_d_eta_1,
-        velocity_by_c_d_eta_2: velocity.c_d_eta_2,
-        velocity_by_c_d_eta_3: velocity.c_d_eta_3,
-        gamma_by_m: gamma.m,
-        gamma_by_s: gamma.s,
-        gamma_by_rho_0: gamma.rho_0,
-        gamma_by_h_0: gamma.h_0,
-        gamma_by_h_s: gamma.h_s,
-        gamma_by_g: gamma.g,
-        gamma_by_r_e: gamma.r_e,
-        gamma_by_canard_command: gamma.canard_command,
-        gamma_by_canard_slaving: gamma.canard_slaving,
-        gamma_by_spherical_earth: gamma.spherical_earth,
-        gamma_by_c_t_phi_alpha_3: gamma.c_t_phi_alpha_3,
-        gamma_by_c_t_phi_alpha_2: gamma.c_t_phi_alpha_2,
-        gamma_by_c_t_phi_alpha: gamma.c_t_phi_alpha,
-        gamma_by_c_t_phi: gamma.c_t_phi,
-        gamma_by_c_t_alpha_3: gamma.c_t_alpha_3,
-        gamma_by_c_t_alpha_2: gamma.c_t_alpha_2,
-        gamma_by_c_t_alpha: gamma.c_t_alpha,
-        gamma_by_c_t_0: gamma.c_t_0,
-        gamma_by_c_t_eta_1: gamma.c_t_eta_1,
-        gamma_by_c_t_eta_2: gamma.c_t_eta_2,
-        gamma_by_c_t_eta_3: gamma.c_t_eta_3,
-        gamma_by_c_l_alpha: gamma.c_l_alpha,
-        gamma_by_c_l_delta_e: gamma.c_l_delta_e,
-        gamma_by_c_l_delta_c: gamma.c_l_delta_c,
-        gamma_by_c_l_0: gamma.c_l_0,
-        gamma_by_c_l_eta_1: gamma.c_l_eta_1,
-        gamma_by_c_l_eta_2: gamma.c_l_eta_2,
-        gamma_by_c_l_eta_3: gamma.c_l_eta_3,
-        alpha_by_m: alpha.m,
-        alpha_by_s: alpha.s,
-        alpha_by_rho_0: alpha.rho_0,
-        alpha_by_h_0: alpha.h_0,
-        alpha_by_h_s: alpha.h_s,
-        alpha_by_g: alpha.g,
-        alpha_by_r_e: alpha.r_e,
-        alpha_by_canard_command: alpha.canard_command,
-        alpha_by_canard_slaving: alpha.canard_slaving,
-        alpha_by_spherical_earth: alpha.spherical_earth,
-        alpha_by_c_t_phi_alpha_3: alpha.c_t_phi_alpha_3,
-        alpha_by_c_t_phi_alpha_2: alpha.c_t_phi_alpha_2,
-        alpha_by_c_t_phi_alpha: alpha.c_t_phi_alpha,
-        alpha_by_c_t_phi: alpha.c_t_phi,
-        alpha_by_c_t_alpha_3: alpha.c_t_alpha_3,
-        alpha_by_c_t_alpha_2: alpha.c_t_alpha_2,
-        alpha_by_c_t_alpha: alpha.c_t_alpha,
-        alpha_by_c_t_0: alpha.c_t_0,
-        alpha_by_c_t_eta_1: alpha.c_t_eta_1,
-        alpha_by_c_t_eta_2: alpha.c_t_eta_2,
-        alpha_by_c_t_eta_3: alpha.c_t_eta_3,
-        alpha_by_c_l_alpha: alpha.c_l_alpha,
-        alpha_by_c_l_delta_e: alpha.c_l_delta_e,
-        alpha_by_c_l_delta_c: alpha.c_l_delta_c,
-        alpha_by_c_l_0: alpha.c_l_0,
-        alpha_by_c_l_eta_1: alpha.c_l_eta_1,
-        alpha_by_c_l_eta_2: alpha.c_l_eta_2,
-        alpha_by_c_l_eta_3: alpha.c_l_eta_3,
-        pitch_rate_by_i_yy: pitch_rate.i_yy,
-        pitch_rate_by_s: pitch_rate.s,
-        pitch_rate_by_c_bar: pitch_rate.c_bar,
-        pitch_rate_by_z_t: pitch_rate.z_t,
-        pitch_rate_by_rho_0: pitch_rate.rho_0,
-        pitch_rate_by_h_0: pitch_rate.h_0,
-        pitch_rate_by_h_s: pitch_rate.h_s,
-        pitch_rate_by_canard_command: pitch_rate.canard_command,
-        pitch_rate_by_canard_slaving: pitch_rate.canard_slaving,
-        pitch_rate_by_c_t_phi_alpha_3: pitch_rate.c_t_phi_alpha_3,
-        pitch_rate_by_c_t_phi_alpha_2: pitch_rate.c_t_phi_alpha_2,
-        pitch_rate_by_c_t_phi_alpha: pitch_rate.c_t_phi_alpha,
-        pitch_rate_by_c_t_phi: pitch_rate.c_t_phi,
-        pitch_rate_by_c_t_alpha_3: pitch_rate.c_t_alpha_3,
-        pitch_rate_by_c_t_alpha_2: pitch_rate.c_t_alpha_2,
-        pitch_rate_by_c_t_alpha: pitch_rate.c_t_alpha,
-        pitch_rate_by_c_t_0: pitch_rate.c_t_0,
-        pitch_rate_by_c_t_eta_1: pitch_rate.c_t_eta_1,
-        pitch_rate_by_c_t_eta_2: pitch_rate.c_t_eta_2,
-        pitch_rate_by_c_t_eta_3: pitch_rate.c_t_eta_3,
-        pitch_rate_by_c_l_delta_e: pitch_rate.c_l_delta_e,
-        pitch_rate_by_c_l_delta_c: pitch_rate.c_l_delta_c,
-        pitch_rate_by_c_m_alpha_2: pitch_rate.c_m_alpha_2,
-        pitch_rate_by_c_m_alpha: pitch_rate.c_m_alpha,
-        pitch_rate_by_c_m_delta_e: pitch_rate.c_m_delta_e,
-        pitch_rate_by_c_m_delta_c: pitch_rate.c_m_delta_c,
-        pitch_rate_by_c_m_0: pitch_rate.c_m_0,
-        pitch_rate_by_c_m_eta_1: pitch_rate.c_m_eta_1,
-        pitch_rate_by_c_m_eta_2: pitch_rate.c_m_eta_2,
-        pitch_rate_by_c_m_eta_3: pitch_rate.c_m_eta_3,
-        eta_dot_1_by_s: eta_dot_1.s,
-        eta_dot_1_by_rho_0: eta_dot_1.rho_0,
-        eta_dot_1_by_h_0: eta_dot_1.h_0,
-        eta_dot_1_by_h_s: eta_dot_1.h_s,
-        eta_dot_1_by_omega_1: eta_dot_1.omega_1,
-        eta_dot_1_by_zeta_1: eta_dot_1.zeta_1,
-        eta_dot_1_by_canard_command: eta_dot_1.canard_command,
-        eta_dot_1_by_canard_slaving: eta_dot_1.canard_slaving,
-        eta_dot_1_by_c_l_delta_e: eta_dot_1.c_l_delta_e,
-        eta_dot_1_by_c_l_delta_c: eta_dot_1.c_l_delta_c,
-        eta_dot_1_by_c_n_1_alpha_2: eta_dot_1.c_n_1_alpha_2,
-        eta_dot_1_by_c_n_1_alpha: eta_dot_1.c_n_1_alpha,
-        eta_dot_1_by_c_n_1_delta_e: eta_dot_1.c_n_1_delta_e,
-        eta_dot_1_by_c_n_1_delta_c: eta_dot_1.c_n_1_delta_c,
-        eta_dot_1_by_c_n_1_0: eta_dot_1.c_n_1_0,
-        eta_dot_2_by_s: eta_dot_2.s,
-        eta_dot_2_by_rho_0: eta_dot_2.rho_0,
-        eta_dot_2_by_h_0: eta_dot_2.h_0,
-        eta_dot_2_by_h_s: eta_dot_2.h_s,
-        eta_dot_2_by_omega_2: eta_dot_2.omega_2,
-        eta_dot_2_by_zeta_2: eta_dot_2.zeta_2,
-        eta_dot_2_by_canard_command: eta_dot_2.canard_command,
-        eta_dot_2_by_canard_slaving: eta_dot_2.canard_slaving,
-        eta_dot_2_by_c_l_delta_e: eta_dot_2.c_l_delta_e,
-        eta_dot_2_by_c_l_delta_c: eta_dot_2.c_l_delta_c,
-        eta_dot_2_by_c_n_2_alpha_2: eta_dot_2.c_n_2_alpha_2,
-        eta_dot_2_by_c_n_2_alpha: eta_dot_2.c_n_2_alpha,
-        eta_dot_2_by_c_n_2_delta_e: eta_dot_2.c_n_2_delta_e,
-        eta_dot_2_by_c_n_2_delta_c: eta_dot_2.c_n_2_delta_c,
-        eta_dot_2_by_c_n_2_0: eta_dot_2.c_n_2_0,
-        eta_dot_3_by_s: eta_dot_3.s,
-        eta_dot_3_by_rho_0: eta_dot_3.rho_0,
-        eta_dot_3_by_h_0: eta_dot_3.h_0,
-        eta_dot_3_by_h_s: eta_dot_3.h_s,
-        eta_dot_3_by_omega_3: eta_dot_3.omega_3,
-        eta_dot_3_by_zeta_3: eta_dot_3.zeta_3,
-        eta_dot_3_by_canard_command: eta_dot_3.canard_command,
-        eta_dot_3_by_canard_slaving: eta_dot_3.canard_slaving,
-        eta_dot_3_by_c_l_delta_e: eta_dot_3.c_l_delta_e,
-        eta_dot_3_by_c_l_delta_c: eta_dot_3.c_l_delta_c,
-        eta_dot_3_by_c_n_3_alpha_2: eta_dot_3.c_n_3_alpha_2,
-        eta_dot_3_by_c_n_3_alpha: eta_dot_3.c_n_3_alpha,
-        eta_dot_3_by_c_n_3_delta_e: eta_dot_3.c_n_3_delta_e,
-        eta_dot_3_by_c_n_3_delta_c: eta_dot_3.c_n_3_delta_c,
-        eta_dot_3_by_c_n_3_0: eta_dot_3.c_n_3_0,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        velocity {
+            m, s, rho_0, h_0, h_s, g, r_e, canard_command, canard_slaving, spherical_earth, c_t_phi_alpha_3,
+            c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2,
+            c_t_eta_3, c_l_delta_e, c_l_delta_c, c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_delta_c_2,
+            c_d_delta_c, c_d_0, c_d_eta_1, c_d_eta_2, c_d_eta_3,
+        }
+        gamma {
+            m, s, rho_0, h_0, h_s, g, r_e, canard_command, canard_slaving, spherical_earth, c_t_phi_alpha_3,
+            c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2,
+            c_t_eta_3, c_l_alpha, c_l_delta_e, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3,
+        }
+        alpha {
+            m, s, rho_0, h_0, h_s, g, r_e, canard_command, canard_slaving, spherical_earth, c_t_phi_alpha_3,
+            c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2,
+            c_t_eta_3, c_l_alpha, c_l_delta_e, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3,
+        }
+        pitch_rate {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, canard_command, canard_slaving, c_t_phi_alpha_3, c_t_phi_alpha_2,
+            c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2, c_t_eta_3,
+            c_l_delta_e, c_l_delta_c, c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_delta_c, c_m_0, c_m_eta_1, c_m_eta_2,
+            c_m_eta_3,
+        }
+        eta_dot_1 {
+            s, rho_0, h_0, h_s, omega_1, zeta_1, canard_command, canard_slaving, c_l_delta_e, c_l_delta_c,
+            c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0,
+        }
+        eta_dot_2 {
+            s, rho_0, h_0, h_s, omega_2, zeta_2, canard_command, canard_slaving, c_l_delta_e, c_l_delta_c,
+            c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0,
+        }
+        eta_dot_3 {
+            s, rho_0, h_0, h_s, omega_3, zeta_3, canard_command, canard_slaving, c_l_delta_e, c_l_delta_c,
+            c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
     }
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
 fn parameter_jacobian_by_vehicle<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
     let d_path_force_d_s = i.dynamic_pressure * (i.c_t * i.cos_alpha - i.c_d); // lb/ft^2
-    let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
+    parameter.velocity.s = d_path_force_d_s * p.inv_m; // 1/s^2
     let d_pitching_moment_d_s = i.dynamic_pressure * (p.c_bar * i.c_m + p.z_t * i.c_t); // lb/ft
-    let d_pitch_acceleration_d_s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
+    parameter.pitch_rate.s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
 
-    parameter.velocity_by_m = -i.path_force * p.inv_m_2;
-    parameter.velocity_by_s = d_velocity_rate_d_s;
-    parameter.gamma_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
-        * p.minus_half_inv_m_2;
-    parameter.gamma_by_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
-        * p.half_over_m;
-    parameter.alpha_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
-        * p.half_inv_m_2;
-    parameter.alpha_by_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
-        * p.minus_half_over_m;
-    parameter.pitch_rate_by_i_yy = -i.pitch_acceleration * p.inv_i_yy;
-    parameter.pitch_rate_by_s = d_pitch_acceleration_d_s;
-    parameter.pitch_rate_by_c_bar = i.reference_force * i.c_m * p.inv_i_yy;
-    parameter.pitch_rate_by_z_t = i.thrust * p.inv_i_yy;
-    parameter.eta_dot_1_by_s = i.c_n_1 * i.dynamic_pressure;
-    parameter.eta_dot_2_by_s = i.c_n_2 * i.dynamic_pressure;
-    parameter.eta_dot_3_by_s = i.c_n_3 * i.dynamic_pressure;
+    parameter.velocity.m = -i.path_force * p.inv_m_2;
+    parameter.gamma.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2;
+    parameter.gamma.s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.half_over_m;
+    parameter.alpha.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.half_inv_m_2;
+    parameter.alpha.s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
+    parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_i_yy;
+    parameter.pitch_rate.c_bar = i.reference_force * i.c_m * p.inv_i_yy;
+    parameter.pitch_rate.z_t = i.thrust * p.inv_i_yy;
+    parameter.eta_dot_1.s = i.c_n_1 * i.dynamic_pressure;
+    parameter.eta_dot_2.s = i.c_n_2 * i.dynamic_pressure;
+    parameter.eta_dot_3.s = i.c_n_3 * i.dynamic_pressure;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by environment.
 #[inline(always)]
 fn parameter_jacobian_by_environment<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    h: &Curvatures<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, h: &Curvatures<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_path_force_d_rho_0 = p.s * i.density_ratio
-        * (R::HALF * i.cos_alpha * i.c_t * i.velocity_2
-            - R::HALF * i.c_d * i.velocity_2); // lb*ft^2/slug
-    let d_velocity_rate_d_rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
+        * (R::HALF * i.cos_alpha * i.c_t * i.velocity_2 - R::HALF * i.c_d * i.velocity_2); // lb*ft^2/slug
+    parameter.velocity.rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
     let d_pitching_moment_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_bar * i.c_m * i.velocity_2 + p.half_z_t * i.c_t * i.velocity_2); // lb*ft^3/slug
-    let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
+    parameter.pitch_rate.rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
     let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     let d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
     let d_thrust_d_h_0 = i.c_t * d_reference_force_d_h_0; // lb/ft^2
     let d_drag_d_h_0 = i.c_d * d_reference_force_d_h_0; // lb/ft^2
     let d_path_force_d_h_0 = i.cos_alpha * d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
-    let d_velocity_rate_d_h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
+    parameter.velocity.h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
-    let d_force_turn_d_h_0 = i.normal_coefficient * d_turn_factor_d_h_0; // rad/s/ft
+    parameter.gamma.h_0 = i.normal_coefficient * d_turn_factor_d_h_0; // rad/s/ft
     let d_pitching_moment_d_h_0 = p.c_bar * i.c_m * d_reference_force_d_h_0
         + p.z_t * d_thrust_d_h_0; // lb/ft
-    let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    parameter.pitch_rate.h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
+    parameter.eta_dot_1.h_0 = i.c_n_1 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    parameter.eta_dot_2.h_0 = i.c_n_2 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
+    parameter.eta_dot_3.h_0 = i.c_n_3 * d_reference_force_d_h_0; // slug^0.5/ft^0.5/s^2
     let d_density_ratio_d_h_s = -i.density_ratio * (p.h_0 - x.altitude) * p.inv_h_s_2; // 1/ft
     let d_density_d_h_s = p.rho_0 * d_density_ratio_d_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
@@ -252,65 +107,43 @@ fn parameter_jacobian_by_environment<R: Real>(
     let d_thrust_d_h_s = i.c_t * d_reference_force_d_h_s; // lb/ft^2
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft^2
     let d_path_force_d_h_s = i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
-    let d_velocity_rate_d_h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
+    parameter.velocity.h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
-    let d_force_turn_d_h_s = i.normal_coefficient * d_turn_factor_d_h_s; // rad/s/ft
+    parameter.gamma.h_s = i.normal_coefficient * d_turn_factor_d_h_s; // rad/s/ft
     let d_pitching_moment_d_h_s = p.c_bar * i.c_m * d_reference_force_d_h_s
         + p.z_t * d_thrust_d_h_s; // lb/ft
-    let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
-    let d_generalized_force_1_d_h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_2_d_h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
-    let d_generalized_force_3_d_h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
+    parameter.eta_dot_1.h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    parameter.eta_dot_2.h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    parameter.eta_dot_3.h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
                 - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
             + x.velocity * p.earth_curvature_2
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
-    let d_gamma_rate_d_r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
+    parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
 
-    parameter.velocity_by_rho_0 = d_velocity_rate_d_rho_0;
-    parameter.velocity_by_h_0 = d_velocity_rate_d_h_0;
-    parameter.velocity_by_h_s = d_velocity_rate_d_h_s;
-    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity
-        * i.density_ratio;
-    parameter.gamma_by_h_0 = d_force_turn_d_h_0;
-    parameter.gamma_by_h_s = d_force_turn_d_h_s;
-    parameter.gamma_by_g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.gamma_by_r_e = d_gamma_rate_d_r_e;
-    parameter.alpha_by_rho_0 = i.normal_coefficient * p.minus_half_s_over_m * x.velocity
-        * i.density_ratio;
-    parameter.alpha_by_h_0 = -d_force_turn_d_h_0;
-    parameter.alpha_by_h_s = -d_force_turn_d_h_s;
-    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha_by_r_e = -d_gamma_rate_d_r_e;
-    parameter.pitch_rate_by_rho_0 = d_pitch_acceleration_d_rho_0;
-    parameter.pitch_rate_by_h_0 = d_pitch_acceleration_d_h_0;
-    parameter.pitch_rate_by_h_s = d_pitch_acceleration_d_h_s;
-    parameter.eta_dot_1_by_rho_0 = i.c_n_1 * p.half_s * i.velocity_2 * i.density_ratio;
-    parameter.eta_dot_1_by_h_0 = d_generalized_force_1_d_h_0;
-    parameter.eta_dot_1_by_h_s = d_generalized_force_1_d_h_s;
-    parameter.eta_dot_2_by_rho_0 = i.c_n_2 * p.half_s * i.velocity_2 * i.density_ratio;
-    parameter.eta_dot_2_by_h_0 = d_generalized_force_2_d_h_0;
-    parameter.eta_dot_2_by_h_s = d_generalized_force_2_d_h_s;
-    parameter.eta_dot_3_by_rho_0 = i.c_n_3 * p.half_s * i.velocity_2 * i.density_ratio;
-    parameter.eta_dot_3_by_h_0 = d_generalized_force_3_d_h_0;
-    parameter.eta_dot_3_by_h_s = d_generalized_force_3_d_h_s;
+    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma.rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity * i.density_ratio;
+    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.rho_0 = i.normal_coefficient * p.minus_half_s_over_m * x.velocity * i.density_ratio;
+    parameter.alpha.h_0 = -parameter.gamma.h_0;
+    parameter.alpha.h_s = -parameter.gamma.h_s;
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.r_e = -parameter.gamma.r_e;
+    parameter.eta_dot_1.rho_0 = i.c_n_1 * p.half_s * i.velocity_2 * i.density_ratio;
+    parameter.eta_dot_2.rho_0 = i.c_n_2 * p.half_s * i.velocity_2 * i.density_ratio;
+    parameter.eta_dot_3.rho_0 = i.c_n_3 * p.half_s * i.velocity_2 * i.density_ratio;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by choices, c_t.
 #[inline(always)]
 fn parameter_jacobian_by_choices_c_t<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
@@ -319,203 +152,152 @@ fn parameter_jacobian_by_choices_c_t<R: Real>(
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
 
-    parameter.velocity_by_canard_command = -i.reference_force
-        * s.slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m;
-    parameter.velocity_by_canard_slaving = i.reference_force
-        * s.slope_of_c_d_in_canard_deflection * u.delta_e
+    parameter.velocity.canard_command = -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m;
+    parameter.velocity.canard_slaving = i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.c_l_delta_e_over_c_l_delta_c_m;
-    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_canard_command = i.turn_factor * p.c_l_delta_c * u.delta_c;
-    parameter.gamma_by_canard_slaving = -i.turn_factor * u.delta_e * p.c_l_delta_e;
-    parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
-    parameter.alpha_by_canard_command = -i.turn_factor * p.c_l_delta_c * u.delta_c;
-    parameter.alpha_by_canard_slaving = i.turn_factor * u.delta_e * p.c_l_delta_e;
-    parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
-    parameter.pitch_rate_by_canard_command = p.c_bar_c_m_delta_c_over_i_yy
-        * i.reference_force * u.delta_c;
-    parameter.pitch_rate_by_canard_slaving = -p
-        .c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy * i.reference_force
+    parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma.canard_command = i.turn_factor * p.c_l_delta_c * u.delta_c;
+    parameter.gamma.canard_slaving = -i.turn_factor * u.delta_e * p.c_l_delta_e;
+    parameter.alpha.canard_command = -i.turn_factor * p.c_l_delta_c * u.delta_c;
+    parameter.alpha.canard_slaving = i.turn_factor * u.delta_e * p.c_l_delta_e;
+    parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
+    parameter.pitch_rate.canard_command = p.c_bar_c_m_delta_c_over_i_yy * i.reference_force * u.delta_c;
+    parameter.pitch_rate.canard_slaving = -p.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy * i.reference_force
         * u.delta_e;
-    parameter.eta_dot_1_by_canard_command = i.reference_force * p.c_n_1_delta_c
-        * u.delta_c;
-    parameter.eta_dot_1_by_canard_slaving = -i.reference_force
-        * p.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
-    parameter.eta_dot_2_by_canard_command = i.reference_force * p.c_n_2_delta_c
-        * u.delta_c;
-    parameter.eta_dot_2_by_canard_slaving = -i.reference_force
-        * p.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
-    parameter.eta_dot_3_by_canard_command = i.reference_force * p.c_n_3_delta_c
-        * u.delta_c;
-    parameter.eta_dot_3_by_canard_slaving = -i.reference_force
-        * p.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
-    parameter.velocity_by_c_t_phi_alpha_3 = i.cos_alpha * i.reference_force * u.phi
-        * i.alpha_3 * p.inv_m;
-    parameter.velocity_by_c_t_phi_alpha_2 = i.cos_alpha * i.reference_force * u.phi
-        * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_c_t_phi_alpha = i.cos_alpha * i.reference_force * u.phi
-        * x.alpha * p.inv_m;
-    parameter.velocity_by_c_t_phi = i.cos_alpha * i.reference_force * u.phi * p.inv_m;
-    parameter.velocity_by_c_t_alpha_3 = i.cos_alpha * i.reference_force * i.alpha_3
-        * p.inv_m;
-    parameter.velocity_by_c_t_alpha_2 = i.cos_alpha * i.reference_force * i.alpha_2
-        * p.inv_m;
-    parameter.velocity_by_c_t_alpha = i.cos_alpha * i.reference_force * x.alpha
-        * p.inv_m;
-    parameter.velocity_by_c_t_0 = i.cos_alpha * i.reference_force * p.inv_m;
-    parameter.velocity_by_c_t_eta_1 = i.cos_alpha * i.reference_force * x.eta_1
-        * p.inv_m;
-    parameter.velocity_by_c_t_eta_2 = i.cos_alpha * i.reference_force * x.eta_2
-        * p.inv_m;
-    parameter.velocity_by_c_t_eta_3 = i.cos_alpha * i.reference_force * x.eta_3
-        * p.inv_m;
-    parameter.gamma_by_c_t_phi_alpha_3 = i.turn_factor * i.sin_alpha * u.phi * i.alpha_3;
-    parameter.gamma_by_c_t_phi_alpha_2 = i.turn_factor * i.sin_alpha * u.phi * i.alpha_2;
-    parameter.gamma_by_c_t_phi_alpha = i.turn_factor * i.sin_alpha * u.phi * x.alpha;
-    parameter.gamma_by_c_t_phi = i.turn_factor * i.sin_alpha * u.phi;
-    parameter.gamma_by_c_t_alpha_3 = i.turn_factor * i.sin_alpha * i.alpha_3;
-    parameter.gamma_by_c_t_alpha_2 = i.turn_factor * i.sin_alpha * i.alpha_2;
-    parameter.gamma_by_c_t_alpha = i.turn_factor * i.sin_alpha * x.alpha;
-    parameter.gamma_by_c_t_0 = i.turn_factor * i.sin_alpha;
-    parameter.gamma_by_c_t_eta_1 = i.turn_factor * i.sin_alpha * x.eta_1;
-    parameter.gamma_by_c_t_eta_2 = i.turn_factor * i.sin_alpha * x.eta_2;
-    parameter.gamma_by_c_t_eta_3 = i.turn_factor * i.sin_alpha * x.eta_3;
-    parameter.alpha_by_c_t_phi_alpha_3 = -i.turn_factor * i.sin_alpha * u.phi
-        * i.alpha_3;
-    parameter.alpha_by_c_t_phi_alpha_2 = -i.turn_factor * i.sin_alpha * u.phi
-        * i.alpha_2;
-    parameter.alpha_by_c_t_phi_alpha = -i.turn_factor * i.sin_alpha * u.phi * x.alpha;
-    parameter.alpha_by_c_t_phi = -i.turn_factor * i.sin_alpha * u.phi;
-    parameter.alpha_by_c_t_alpha_3 = -i.turn_factor * i.sin_alpha * i.alpha_3;
-    parameter.alpha_by_c_t_alpha_2 = -i.turn_factor * i.sin_alpha * i.alpha_2;
-    parameter.alpha_by_c_t_alpha = -i.turn_factor * i.sin_alpha * x.alpha;
-    parameter.alpha_by_c_t_0 = -i.turn_factor * i.sin_alpha;
-    parameter.alpha_by_c_t_eta_1 = -i.turn_factor * i.sin_alpha * x.eta_1;
-    parameter.alpha_by_c_t_eta_2 = -i.turn_factor * i.sin_alpha * x.eta_2;
-    parameter.alpha_by_c_t_eta_3 = -i.turn_factor * i.sin_alpha * x.eta_3;
-    parameter.pitch_rate_by_c_t_phi_alpha_3 = p.z_t_over_i_yy * i.reference_force * u.phi
-        * i.alpha_3;
-    parameter.pitch_rate_by_c_t_phi_alpha_2 = p.z_t_over_i_yy * i.reference_force * u.phi
-        * i.alpha_2;
-    parameter.pitch_rate_by_c_t_phi_alpha = p.z_t_over_i_yy * i.reference_force * u.phi
-        * x.alpha;
-    parameter.pitch_rate_by_c_t_phi = p.z_t_over_i_yy * i.reference_force * u.phi;
-    parameter.pitch_rate_by_c_t_alpha_3 = p.z_t_over_i_yy * i.reference_force
-        * i.alpha_3;
-    parameter.pitch_rate_by_c_t_alpha_2 = p.z_t_over_i_yy * i.reference_force
-        * i.alpha_2;
-    parameter.pitch_rate_by_c_t_alpha = p.z_t_over_i_yy * i.reference_force * x.alpha;
-    parameter.pitch_rate_by_c_t_0 = p.z_t_over_i_yy * i.reference_force;
-    parameter.pitch_rate_by_c_t_eta_1 = p.z_t_over_i_yy * i.reference_force * x.eta_1;
-    parameter.pitch_rate_by_c_t_eta_2 = p.z_t_over_i_yy * i.reference_force * x.eta_2;
-    parameter.pitch_rate_by_c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * x.eta_3;
+    parameter.eta_dot_1.canard_command = i.reference_force * p.c_n_1_delta_c * u.delta_c;
+    parameter.eta_dot_1.canard_slaving = -i.reference_force * p.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
+    parameter.eta_dot_2.canard_command = i.reference_force * p.c_n_2_delta_c * u.delta_c;
+    parameter.eta_dot_2.canard_slaving = -i.reference_force * p.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
+    parameter.eta_dot_3.canard_command = i.reference_force * p.c_n_3_delta_c * u.delta_c;
+    parameter.eta_dot_3.canard_slaving = -i.reference_force * p.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
+    parameter.velocity.c_t_phi_alpha_3 = i.cos_alpha * i.reference_force * u.phi * i.alpha_3 * p.inv_m;
+    parameter.velocity.c_t_phi_alpha_2 = i.cos_alpha * i.reference_force * u.phi * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_t_phi_alpha = i.cos_alpha * i.reference_force * u.phi * x.alpha * p.inv_m;
+    parameter.velocity.c_t_phi = i.cos_alpha * i.reference_force * u.phi * p.inv_m;
+    parameter.velocity.c_t_alpha_3 = i.cos_alpha * i.reference_force * i.alpha_3 * p.inv_m;
+    parameter.velocity.c_t_alpha_2 = i.cos_alpha * i.reference_force * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_t_alpha = i.cos_alpha * i.reference_force * x.alpha * p.inv_m;
+    parameter.velocity.c_t_0 = i.cos_alpha * i.reference_force * p.inv_m;
+    parameter.velocity.c_t_eta_1 = i.cos_alpha * i.reference_force * x.eta_1 * p.inv_m;
+    parameter.velocity.c_t_eta_2 = i.cos_alpha * i.reference_force * x.eta_2 * p.inv_m;
+    parameter.velocity.c_t_eta_3 = i.cos_alpha * i.reference_force * x.eta_3 * p.inv_m;
+    parameter.gamma.c_t_phi_alpha_3 = i.turn_factor * i.sin_alpha * u.phi * i.alpha_3;
+    parameter.gamma.c_t_phi_alpha_2 = i.turn_factor * i.sin_alpha * u.phi * i.alpha_2;
+    parameter.gamma.c_t_phi_alpha = i.turn_factor * i.sin_alpha * u.phi * x.alpha;
+    parameter.gamma.c_t_phi = i.turn_factor * i.sin_alpha * u.phi;
+    parameter.gamma.c_t_alpha_3 = i.turn_factor * i.sin_alpha * i.alpha_3;
+    parameter.gamma.c_t_alpha_2 = i.turn_factor * i.sin_alpha * i.alpha_2;
+    parameter.gamma.c_t_alpha = i.turn_factor * i.sin_alpha * x.alpha;
+    parameter.gamma.c_t_0 = i.turn_factor * i.sin_alpha;
+    parameter.gamma.c_t_eta_1 = i.turn_factor * i.sin_alpha * x.eta_1;
+    parameter.gamma.c_t_eta_2 = i.turn_factor * i.sin_alpha * x.eta_2;
+    parameter.gamma.c_t_eta_3 = i.turn_factor * i.sin_alpha * x.eta_3;
+    parameter.alpha.c_t_phi_alpha_3 = -i.turn_factor * i.sin_alpha * u.phi * i.alpha_3;
+    parameter.alpha.c_t_phi_alpha_2 = -i.turn_factor * i.sin_alpha * u.phi * i.alpha_2;
+    parameter.alpha.c_t_phi_alpha = -i.turn_factor * i.sin_alpha * u.phi * x.alpha;
+    parameter.alpha.c_t_phi = -i.turn_factor * i.sin_alpha * u.phi;
+    parameter.alpha.c_t_alpha_3 = -i.turn_factor * i.sin_alpha * i.alpha_3;
+    parameter.alpha.c_t_alpha_2 = -i.turn_factor * i.sin_alpha * i.alpha_2;
+    parameter.alpha.c_t_alpha = -i.turn_factor * i.sin_alpha * x.alpha;
+    parameter.alpha.c_t_0 = -i.turn_factor * i.sin_alpha;
+    parameter.alpha.c_t_eta_1 = -i.turn_factor * i.sin_alpha * x.eta_1;
+    parameter.alpha.c_t_eta_2 = -i.turn_factor * i.sin_alpha * x.eta_2;
+    parameter.alpha.c_t_eta_3 = -i.turn_factor * i.sin_alpha * x.eta_3;
+    parameter.pitch_rate.c_t_phi_alpha_3 = p.z_t_over_i_yy * i.reference_force * u.phi * i.alpha_3;
+    parameter.pitch_rate.c_t_phi_alpha_2 = p.z_t_over_i_yy * i.reference_force * u.phi * i.alpha_2;
+    parameter.pitch_rate.c_t_phi_alpha = p.z_t_over_i_yy * i.reference_force * u.phi * x.alpha;
+    parameter.pitch_rate.c_t_phi = p.z_t_over_i_yy * i.reference_force * u.phi;
+    parameter.pitch_rate.c_t_alpha_3 = p.z_t_over_i_yy * i.reference_force * i.alpha_3;
+    parameter.pitch_rate.c_t_alpha_2 = p.z_t_over_i_yy * i.reference_force * i.alpha_2;
+    parameter.pitch_rate.c_t_alpha = p.z_t_over_i_yy * i.reference_force * x.alpha;
+    parameter.pitch_rate.c_t_0 = p.z_t_over_i_yy * i.reference_force;
+    parameter.pitch_rate.c_t_eta_1 = p.z_t_over_i_yy * i.reference_force * x.eta_1;
+    parameter.pitch_rate.c_t_eta_2 = p.z_t_over_i_yy * i.reference_force * x.eta_2;
+    parameter.pitch_rate.c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * x.eta_3;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d, c_m, modes, c_n_1, c_n_2, c_n_3.
 #[inline(always)]
 fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_eta_acceleration_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1
-        + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
-    let d_eta_acceleration_2_d_omega_2 = -(x.eta_dot_2 * p.two_zeta_2
-        + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
-    let d_eta_acceleration_3_d_omega_3 = -(x.eta_dot_3 * p.two_zeta_3
-        + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_1.omega_1 = -(x.eta_dot_1 * p.two_zeta_1 + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_2.omega_2 = -(x.eta_dot_2 * p.two_zeta_2 + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_3.omega_3 = -(x.eta_dot_3 * p.two_zeta_3 + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
     let d_c_l_d_c_l_delta_e = u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
-    let d_force_turn_d_c_l_delta_e = i.turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
+    parameter.gamma.c_l_delta_e = i.turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
 
-    parameter.velocity_by_c_l_delta_e = i.reference_force
-        * s.slope_of_c_d_in_canard_deflection * u.delta_e
+    parameter.velocity.c_l_delta_e = i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.canard_slaving_over_c_l_delta_c_m;
-    parameter.velocity_by_c_l_delta_c = -i.reference_force
-        * s.slope_of_c_d_in_canard_deflection * u.delta_e
+    parameter.velocity.c_l_delta_c = -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m;
-    parameter.gamma_by_c_l_alpha = i.turn_factor * x.alpha;
-    parameter.gamma_by_c_l_delta_e = d_force_turn_d_c_l_delta_e;
-    parameter.gamma_by_c_l_delta_c = i.turn_factor * i.canard_commanded;
-    parameter.gamma_by_c_l_0 = i.turn_factor;
-    parameter.gamma_by_c_l_eta_1 = i.turn_factor * x.eta_1;
-    parameter.gamma_by_c_l_eta_2 = i.turn_factor * x.eta_2;
-    parameter.gamma_by_c_l_eta_3 = i.turn_factor * x.eta_3;
-    parameter.alpha_by_c_l_alpha = -i.turn_factor * x.alpha;
-    parameter.alpha_by_c_l_delta_e = -d_force_turn_d_c_l_delta_e;
-    parameter.alpha_by_c_l_delta_c = -i.turn_factor * i.canard_commanded;
-    parameter.alpha_by_c_l_0 = -i.turn_factor;
-    parameter.alpha_by_c_l_eta_1 = -i.turn_factor * x.eta_1;
-    parameter.alpha_by_c_l_eta_2 = -i.turn_factor * x.eta_2;
-    parameter.alpha_by_c_l_eta_3 = -i.turn_factor * x.eta_3;
-    parameter.pitch_rate_by_c_l_delta_e = -p
-        .c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy * i.reference_force
+    parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
+    parameter.gamma.c_l_delta_c = i.turn_factor * i.canard_commanded;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.gamma.c_l_eta_1 = i.turn_factor * x.eta_1;
+    parameter.gamma.c_l_eta_2 = i.turn_factor * x.eta_2;
+    parameter.gamma.c_l_eta_3 = i.turn_factor * x.eta_3;
+    parameter.alpha.c_l_alpha = -i.turn_factor * x.alpha;
+    parameter.alpha.c_l_delta_e = -parameter.gamma.c_l_delta_e;
+    parameter.alpha.c_l_delta_c = -i.turn_factor * i.canard_commanded;
+    parameter.alpha.c_l_0 = -i.turn_factor;
+    parameter.alpha.c_l_eta_1 = -i.turn_factor * x.eta_1;
+    parameter.alpha.c_l_eta_2 = -i.turn_factor * x.eta_2;
+    parameter.alpha.c_l_eta_3 = -i.turn_factor * x.eta_3;
+    parameter.pitch_rate.c_l_delta_e = -p.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy * i.reference_force
         * u.delta_e;
-    parameter.pitch_rate_by_c_l_delta_c = p
-        .c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy
+    parameter.pitch_rate.c_l_delta_c = p.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy
         * i.reference_force * u.delta_e;
-    parameter.eta_dot_1_by_c_l_delta_e = -i.reference_force
-        * p.c_n_1_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
-    parameter.eta_dot_1_by_c_l_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 * u.delta_e;
-    parameter.eta_dot_2_by_c_l_delta_e = -i.reference_force
-        * p.c_n_2_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
-    parameter.eta_dot_2_by_c_l_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 * u.delta_e;
-    parameter.eta_dot_3_by_c_l_delta_e = -i.reference_force
-        * p.c_n_3_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
-    parameter.eta_dot_3_by_c_l_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 * u.delta_e;
-    parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
-    parameter.velocity_by_c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
-    parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
-    parameter.velocity_by_c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
-    parameter.velocity_by_c_d_delta_c_2 = -i.reference_force * i.canard_deflection_2
-        * p.inv_m;
-    parameter.velocity_by_c_d_delta_c = -i.reference_force * i.canard_deflection
-        * p.inv_m;
-    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
-    parameter.velocity_by_c_d_eta_1 = -i.reference_force * x.eta_1 * p.inv_m;
-    parameter.velocity_by_c_d_eta_2 = -i.reference_force * x.eta_2 * p.inv_m;
-    parameter.velocity_by_c_d_eta_3 = -i.reference_force * x.eta_3 * p.inv_m;
-    parameter.pitch_rate_by_c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force
-        * i.alpha_2;
-    parameter.pitch_rate_by_c_m_alpha = p.c_bar_over_i_yy * i.reference_force * x.alpha;
-    parameter.pitch_rate_by_c_m_delta_e = p.c_bar_over_i_yy * i.reference_force
+    parameter.eta_dot_1.c_l_delta_e = -i.reference_force * p.c_n_1_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
+    parameter.eta_dot_1.c_l_delta_c = i.reference_force * p.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * u.delta_e;
-    parameter.pitch_rate_by_c_m_delta_c = p.c_bar_over_i_yy * i.reference_force
-        * i.canard_deflection;
-    parameter.pitch_rate_by_c_m_0 = p.c_bar_over_i_yy * i.reference_force;
-    parameter.pitch_rate_by_c_m_eta_1 = p.c_bar_over_i_yy * i.reference_force * x.eta_1;
-    parameter.pitch_rate_by_c_m_eta_2 = p.c_bar_over_i_yy * i.reference_force * x.eta_2;
-    parameter.pitch_rate_by_c_m_eta_3 = p.c_bar_over_i_yy * i.reference_force * x.eta_3;
-    parameter.eta_dot_1_by_omega_1 = d_eta_acceleration_1_d_omega_1;
-    parameter.eta_dot_1_by_zeta_1 = x.eta_dot_1 * p.minus_two_omega_1;
-    parameter.eta_dot_2_by_omega_2 = d_eta_acceleration_2_d_omega_2;
-    parameter.eta_dot_2_by_zeta_2 = x.eta_dot_2 * p.minus_two_omega_2;
-    parameter.eta_dot_3_by_omega_3 = d_eta_acceleration_3_d_omega_3;
-    parameter.eta_dot_3_by_zeta_3 = x.eta_dot_3 * p.minus_two_omega_3;
-    parameter.eta_dot_1_by_c_n_1_alpha_2 = q.reference_force_alpha_2;
-    parameter.eta_dot_1_by_c_n_1_alpha = q.reference_force_alpha;
-    parameter.eta_dot_1_by_c_n_1_delta_e = q.reference_force_delta_e;
-    parameter.eta_dot_1_by_c_n_1_delta_c = q.reference_force_canard_deflection;
-    parameter.eta_dot_1_by_c_n_1_0 = i.reference_force;
-    parameter.eta_dot_2_by_c_n_2_alpha_2 = q.reference_force_alpha_2;
-    parameter.eta_dot_2_by_c_n_2_alpha = q.reference_force_alpha;
-    parameter.eta_dot_2_by_c_n_2_delta_e = q.reference_force_delta_e;
-    parameter.eta_dot_2_by_c_n_2_delta_c = q.reference_force_canard_deflection;
-    parameter.eta_dot_2_by_c_n_2_0 = i.reference_force;
-    parameter.eta_dot_3_by_c_n_3_alpha_2 = q.reference_force_alpha_2;
-    parameter.eta_dot_3_by_c_n_3_alpha = q.reference_force_alpha;
-    parameter.eta_dot_3_by_c_n_3_delta_e = q.reference_force_delta_e;
-    parameter.eta_dot_3_by_c_n_3_delta_c = q.reference_force_canard_deflection;
-    parameter.eta_dot_3_by_c_n_3_0 = i.reference_force;
+    parameter.eta_dot_2.c_l_delta_e = -i.reference_force * p.c_n_2_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
+    parameter.eta_dot_2.c_l_delta_c = i.reference_force * p.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        * u.delta_e;
+    parameter.eta_dot_3.c_l_delta_e = -i.reference_force * p.c_n_3_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
+    parameter.eta_dot_3.c_l_delta_c = i.reference_force * p.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+        * u.delta_e;
+    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
+    parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
+    parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
+    parameter.velocity.c_d_delta_c_2 = -i.reference_force * i.canard_deflection_2 * p.inv_m;
+    parameter.velocity.c_d_delta_c = -i.reference_force * i.canard_deflection * p.inv_m;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+    parameter.velocity.c_d_eta_1 = -i.reference_force * x.eta_1 * p.inv_m;
+    parameter.velocity.c_d_eta_2 = -i.reference_force * x.eta_2 * p.inv_m;
+    parameter.velocity.c_d_eta_3 = -i.reference_force * x.eta_3 * p.inv_m;
+    parameter.pitch_rate.c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force * i.alpha_2;
+    parameter.pitch_rate.c_m_alpha = p.c_bar_over_i_yy * i.reference_force * x.alpha;
+    parameter.pitch_rate.c_m_delta_e = p.c_bar_over_i_yy * i.reference_force * u.delta_e;
+    parameter.pitch_rate.c_m_delta_c = p.c_bar_over_i_yy * i.reference_force * i.canard_deflection;
+    parameter.pitch_rate.c_m_0 = p.c_bar_over_i_yy * i.reference_force;
+    parameter.pitch_rate.c_m_eta_1 = p.c_bar_over_i_yy * i.reference_force * x.eta_1;
+    parameter.pitch_rate.c_m_eta_2 = p.c_bar_over_i_yy * i.reference_force * x.eta_2;
+    parameter.pitch_rate.c_m_eta_3 = p.c_bar_over_i_yy * i.reference_force * x.eta_3;
+    parameter.eta_dot_1.zeta_1 = x.eta_dot_1 * p.minus_two_omega_1;
+    parameter.eta_dot_2.zeta_2 = x.eta_dot_2 * p.minus_two_omega_2;
+    parameter.eta_dot_3.zeta_3 = x.eta_dot_3 * p.minus_two_omega_3;
+    parameter.eta_dot_1.c_n_1_alpha_2 = q.reference_force_alpha_2;
+    parameter.eta_dot_1.c_n_1_alpha = q.reference_force_alpha;
+    parameter.eta_dot_1.c_n_1_delta_e = q.reference_force_delta_e;
+    parameter.eta_dot_1.c_n_1_delta_c = q.reference_force_canard_deflection;
+    parameter.eta_dot_1.c_n_1_0 = i.reference_force;
+    parameter.eta_dot_2.c_n_2_alpha_2 = q.reference_force_alpha_2;
+    parameter.eta_dot_2.c_n_2_alpha = q.reference_force_alpha;
+    parameter.eta_dot_2.c_n_2_delta_e = q.reference_force_delta_e;
+    parameter.eta_dot_2.c_n_2_delta_c = q.reference_force_canard_deflection;
+    parameter.eta_dot_2.c_n_2_0 = i.reference_force;
+    parameter.eta_dot_3.c_n_3_alpha_2 = q.reference_force_alpha_2;
+    parameter.eta_dot_3.c_n_3_alpha = q.reference_force_alpha;
+    parameter.eta_dot_3.c_n_3_delta_e = q.reference_force_delta_e;
+    parameter.eta_dot_3.c_n_3_delta_c = q.reference_force_canard_deflection;
+    parameter.eta_dot_3.c_n_3_0 = i.reference_force;
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
@@ -524,11 +306,7 @@ fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
 ///
 /// 477 operations: 66 additions, 406 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
@@ -543,10 +321,6 @@ pub fn parameter_jacobian_values<R: Real>(
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

@@ -4,256 +4,170 @@
 
 use ahv_core::Bounds;
 
-/// One value for each parameter and coefficient of the table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Parameters<T> {
-    /// Vehicle mass, slug/ft.
-    pub m: T,
-    /// Pitch moment of inertia, slug*ft.
-    pub i_yy: T,
-    /// Reference area, ft.
-    pub s: T,
-    /// Mean aerodynamic chord, ft.
-    pub c_bar: T,
-    /// Thrust-to-moment coupling arm, ft.
-    pub z_t: T,
-    /// Air density at the reference altitude, slug/ft^3.
-    pub rho_0: T,
-    /// Reference altitude of the air density, ft.
-    pub h_0: T,
-    /// Scale height of the air density, ft.
-    pub h_s: T,
-    /// Acceleration of gravity at sea level, ft/s^2.
-    pub g: T,
-    /// Radius of the Earth, ft.
-    pub r_e: T,
-    /// Natural frequency of mode 1, rad/s.
-    pub omega_1: T,
-    /// Natural frequency of mode 2, rad/s.
-    pub omega_2: T,
-    /// Natural frequency of mode 3, rad/s.
-    pub omega_3: T,
-    /// Damping ratio of mode 1, dimensionless.
-    pub zeta_1: T,
-    /// Damping ratio of mode 2, dimensionless.
-    pub zeta_2: T,
-    /// Damping ratio of mode 3, dimensionless.
-    pub zeta_3: T,
-    /// Intensity of the white noise on mode 1, (ft*slug)^0.5/s^1.5.
-    pub sigma_1: T,
-    /// Intensity of the white noise on mode 2, (ft*slug)^0.5/s^1.5.
-    pub sigma_2: T,
-    /// Intensity of the white noise on mode 3, (ft*slug)^0.5/s^1.5.
-    pub sigma_3: T,
-    /// Intensity of the white noise w_gamma, rad*s^0.5.
-    pub w_gamma: T,
-    /// Intensity of the white noise w_alpha, rad*s^0.5.
-    pub w_alpha: T,
-    /// Intensity of the white noise w_Q, rad/s^0.5.
-    pub w_q: T,
-    /// Root mean square of the gust incidence, rad.
-    pub gust_rms: T,
-    /// Correlation time of the gust incidence, s.
-    pub gust_time: T,
-    /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
-    pub canard_command: T,
-    /// Share of law (4) in the canard deflection: 1 canard slaved, else 0, dimensionless.
-    pub canard_slaving: T,
-    /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
-    pub spherical_earth: T,
-    /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
-    pub shared_noise: T,
-    /// Share of the reduction that matches decay rate and variance, dimensionless.
-    pub variance_matching: T,
-    /// Share of the reduction that matches variance and gain at zero frequency, dimensionless.
-    pub moment_matching: T,
-    /// Coefficient of phi*alpha^3 in C_T, 1/rad^3.
-    pub c_t_phi_alpha_3: T,
-    /// Coefficient of phi*alpha^2 in C_T, 1/rad^2.
-    pub c_t_phi_alpha_2: T,
-    /// Coefficient of phi*alpha in C_T, 1/rad.
-    pub c_t_phi_alpha: T,
-    /// Coefficient of phi in C_T, dimensionless.
-    pub c_t_phi: T,
-    /// Coefficient of alpha^3 in C_T, 1/rad^3.
-    pub c_t_alpha_3: T,
-    /// Coefficient of alpha^2 in C_T, 1/rad^2.
-    pub c_t_alpha_2: T,
-    /// Coefficient of alpha in C_T, 1/rad.
-    pub c_t_alpha: T,
-    /// Constant part of C_T, dimensionless.
-    pub c_t_0: T,
-    /// Coefficient of eta_1 in C_T, 1/(ft*slug)^0.5.
-    pub c_t_eta_1: T,
-    /// Coefficient of eta_2 in C_T, 1/(ft*slug)^0.5.
-    pub c_t_eta_2: T,
-    /// Coefficient of eta_3 in C_T, 1/(ft*slug)^0.5.
-    pub c_t_eta_3: T,
-    /// Coefficient of alpha in C_L, 1/rad.
-    pub c_l_alpha: T,
-    /// Coefficient of delta_e in C_L, 1/rad.
-    pub c_l_delta_e: T,
-    /// Coefficient of delta_c in C_L, 1/rad.
-    pub c_l_delta_c: T,
-    /// Constant part of C_L, dimensionless.
-    pub c_l_0: T,
-    /// Coefficient of eta_1 in C_L, 1/(ft*slug)^0.5.
-    pub c_l_eta_1: T,
-    /// Coefficient of eta_2 in C_L, 1/(ft*slug)^0.5.
-    pub c_l_eta_2: T,
-    /// Coefficient of eta_3 in C_L, 1/(ft*slug)^0.5.
-    pub c_l_eta_3: T,
-    /// Coefficient of alpha^2 in C_D, 1/rad^2.
-    pub c_d_alpha_2: T,
-    /// Coefficient of alpha in C_D, 1/rad.
-    pub c_d_alpha: T,
-    /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-    pub c_d_delta_e_2: T,
-    /// Coefficient of delta_e in C_D, 1/rad.
-    pub c_d_delta_e: T,
-    /// Coefficient of delta_c^2 in C_D, 1/rad^2.
-    pub c_d_delta_c_2: T,
-    /// Coefficient of delta_c in C_D, 1/rad.
-    pub c_d_delta_c: T,
-    /// Constant part of C_D, dimensionless.
-    pub c_d_0: T,
-    /// Coefficient of eta_1 in C_D, 1/(ft*slug)^0.5.
-    pub c_d_eta_1: T,
-    /// Coefficient of eta_2 in C_D, 1/(ft*slug)^0.5.
-    pub c_d_eta_2: T,
-    /// Coefficient of eta_3 in C_D, 1/(ft*slug)^0.5.
-    pub c_d_eta_3: T,
-    /// Coefficient of alpha^2 in C_M, 1/rad^2.
-    pub c_m_alpha_2: T,
-    /// Coefficient of alpha in C_M, 1/rad.
-    pub c_m_alpha: T,
-    /// Coefficient of delta_e in C_M, 1/rad.
-    pub c_m_delta_e: T,
-    /// Coefficient of delta_c in C_M, 1/rad.
-    pub c_m_delta_c: T,
-    /// Constant part of C_M, dimensionless.
-    pub c_m_0: T,
-    /// Coefficient of eta_1 in C_M, 1/(ft*slug)^0.5.
-    pub c_m_eta_1: T,
-    /// Coefficient of eta_2 in C_M, 1/(ft*slug)^0.5.
-    pub c_m_eta_2: T,
-    /// Coefficient of eta_3 in C_M, 1/(ft*slug)^0.5.
-    pub c_m_eta_3: T,
-    /// Coefficient of alpha^2 in C_N_1, (ft/slug)^0.5/rad^2.
-    pub c_n_1_alpha_2: T,
-    /// Coefficient of alpha in C_N_1, (ft/slug)^0.5/rad.
-    pub c_n_1_alpha: T,
-    /// Coefficient of delta_e in C_N_1, (ft/slug)^0.5/rad.
-    pub c_n_1_delta_e: T,
-    /// Coefficient of delta_c in C_N_1, (ft/slug)^0.5/rad.
-    pub c_n_1_delta_c: T,
-    /// Constant part of C_N_1, (ft/slug)^0.5.
-    pub c_n_1_0: T,
-    /// Coefficient of alpha^2 in C_N_2, (ft/slug)^0.5/rad^2.
-    pub c_n_2_alpha_2: T,
-    /// Coefficient of alpha in C_N_2, (ft/slug)^0.5/rad.
-    pub c_n_2_alpha: T,
-    /// Coefficient of delta_e in C_N_2, (ft/slug)^0.5/rad.
-    pub c_n_2_delta_e: T,
-    /// Coefficient of delta_c in C_N_2, (ft/slug)^0.5/rad.
-    pub c_n_2_delta_c: T,
-    /// Constant part of C_N_2, (ft/slug)^0.5.
-    pub c_n_2_0: T,
-    /// Coefficient of alpha^2 in C_N_3, (ft/slug)^0.5/rad^2.
-    pub c_n_3_alpha_2: T,
-    /// Coefficient of alpha in C_N_3, (ft/slug)^0.5/rad.
-    pub c_n_3_alpha: T,
-    /// Coefficient of delta_e in C_N_3, (ft/slug)^0.5/rad.
-    pub c_n_3_delta_e: T,
-    /// Coefficient of delta_c in C_N_3, (ft/slug)^0.5/rad.
-    pub c_n_3_delta_c: T,
-    /// Constant part of C_N_3, (ft/slug)^0.5.
-    pub c_n_3_0: T,
-}
-
-ahv_core::impl_vector! {
-    Parameters {
+ahv_core::vector! {
+    /// One value for each parameter and coefficient of the table.
+    pub struct Parameters<T> {
+        /// Vehicle mass, slug/ft.
         m: ["slug/ft", "kg/m", 47.880258980335846],
+        /// Pitch moment of inertia, slug*ft.
         i_yy: ["slug*ft", "kg*m", 4.4482216152605],
+        /// Reference area, ft.
         s: ["ft", "m", 0.3048],
+        /// Mean aerodynamic chord, ft.
         c_bar: ["ft", "m", 0.3048],
+        /// Thrust-to-moment coupling arm, ft.
         z_t: ["ft", "m", 0.3048],
+        /// Air density at the reference altitude, slug/ft^3.
         rho_0: ["slug/ft^3", "kg/m^3", 515.3788183931962],
+        /// Reference altitude of the air density, ft.
         h_0: ["ft", "m", 0.3048],
+        /// Scale height of the air density, ft.
         h_s: ["ft", "m", 0.3048],
+        /// Acceleration of gravity at sea level, ft/s^2.
         g: ["ft/s^2", "m/s^2", 0.3048],
+        /// Radius of the Earth, ft.
         r_e: ["ft", "m", 0.3048],
+        /// Natural frequency of mode 1, rad/s.
         omega_1: ["rad/s", "rad/s", 1.0],
+        /// Natural frequency of mode 2, rad/s.
         omega_2: ["rad/s", "rad/s", 1.0],
+        /// Natural frequency of mode 3, rad/s.
         omega_3: ["rad/s", "rad/s", 1.0],
+        /// Damping ratio of mode 1, dimensionless.
         zeta_1: ["1", "1", 1.0],
+        /// Damping ratio of mode 2, dimensionless.
         zeta_2: ["1", "1", 1.0],
+        /// Damping ratio of mode 3, dimensionless.
         zeta_3: ["1", "1", 1.0],
+        /// Intensity of the white noise on mode 1, (ft*slug)^0.5/s^1.5.
         sigma_1: ["(ft*slug)^0.5/s^1.5", "(m*kg)^0.5/s^1.5", 2.1090807512422325],
+        /// Intensity of the white noise on mode 2, (ft*slug)^0.5/s^1.5.
         sigma_2: ["(ft*slug)^0.5/s^1.5", "(m*kg)^0.5/s^1.5", 2.1090807512422325],
+        /// Intensity of the white noise on mode 3, (ft*slug)^0.5/s^1.5.
         sigma_3: ["(ft*slug)^0.5/s^1.5", "(m*kg)^0.5/s^1.5", 2.1090807512422325],
+        /// Intensity of the white noise w_gamma, rad*s^0.5.
         w_gamma: ["rad*s^0.5", "rad*s^0.5", 1.0],
+        /// Intensity of the white noise w_alpha, rad*s^0.5.
         w_alpha: ["rad*s^0.5", "rad*s^0.5", 1.0],
+        /// Intensity of the white noise w_Q, rad/s^0.5.
         w_q: ["rad/s^0.5", "rad/s^0.5", 1.0],
+        /// Root mean square of the gust incidence, rad.
         gust_rms: ["rad", "rad", 1.0],
+        /// Correlation time of the gust incidence, s.
         gust_time: ["s", "s", 1.0],
+        /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
         canard_command: ["1", "1", 1.0],
+        /// Share of law (4) in the canard deflection: 1 canard slaved, else 0, dimensionless.
         canard_slaving: ["1", "1", 1.0],
+        /// Share of the Earth's curvature in the motion: 1 spherical, 0 flat, dimensionless.
         spherical_earth: ["1", "1", 1.0],
+        /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
         shared_noise: ["1", "1", 1.0],
+        /// Share of the reduction that matches decay rate and variance, dimensionless.
         variance_matching: ["1", "1", 1.0],
+        /// Share of the reduction that matches variance and gain at zero frequency, dimensionless.
         moment_matching: ["1", "1", 1.0],
+        /// Coefficient of phi*alpha^3 in C_T, 1/rad^3.
         c_t_phi_alpha_3: ["1/rad^3", "1/rad^3", 1.0],
+        /// Coefficient of phi*alpha^2 in C_T, 1/rad^2.
         c_t_phi_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of phi*alpha in C_T, 1/rad.
         c_t_phi_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of phi in C_T, dimensionless.
         c_t_phi: ["1", "1", 1.0],
+        /// Coefficient of alpha^3 in C_T, 1/rad^3.
         c_t_alpha_3: ["1/rad^3", "1/rad^3", 1.0],
+        /// Coefficient of alpha^2 in C_T, 1/rad^2.
         c_t_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_T, 1/rad.
         c_t_alpha: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_T, dimensionless.
         c_t_0: ["1", "1", 1.0],
+        /// Coefficient of eta_1 in C_T, 1/(ft*slug)^0.5.
         c_t_eta_1: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_2 in C_T, 1/(ft*slug)^0.5.
         c_t_eta_2: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_3 in C_T, 1/(ft*slug)^0.5.
         c_t_eta_3: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of alpha in C_L, 1/rad.
         c_l_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_e in C_L, 1/rad.
         c_l_delta_e: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_c in C_L, 1/rad.
         c_l_delta_c: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_L, dimensionless.
         c_l_0: ["1", "1", 1.0],
+        /// Coefficient of eta_1 in C_L, 1/(ft*slug)^0.5.
         c_l_eta_1: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_2 in C_L, 1/(ft*slug)^0.5.
         c_l_eta_2: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_3 in C_L, 1/(ft*slug)^0.5.
         c_l_eta_3: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of alpha^2 in C_D, 1/rad^2.
         c_d_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_D, 1/rad.
         c_d_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
         c_d_delta_e_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of delta_e in C_D, 1/rad.
         c_d_delta_e: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_c^2 in C_D, 1/rad^2.
         c_d_delta_c_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of delta_c in C_D, 1/rad.
         c_d_delta_c: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_D, dimensionless.
         c_d_0: ["1", "1", 1.0],
+        /// Coefficient of eta_1 in C_D, 1/(ft*slug)^0.5.
         c_d_eta_1: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_2 in C_D, 1/(ft*slug)^0.5.
         c_d_eta_2: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_3 in C_D, 1/(ft*slug)^0.5.
         c_d_eta_3: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of alpha^2 in C_M, 1/rad^2.
         c_m_alpha_2: ["1/rad^2", "1/rad^2", 1.0],
+        /// Coefficient of alpha in C_M, 1/rad.
         c_m_alpha: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_e in C_M, 1/rad.
         c_m_delta_e: ["1/rad", "1/rad", 1.0],
+        /// Coefficient of delta_c in C_M, 1/rad.
         c_m_delta_c: ["1/rad", "1/rad", 1.0],
+        /// Constant part of C_M, dimensionless.
         c_m_0: ["1", "1", 1.0],
+        /// Coefficient of eta_1 in C_M, 1/(ft*slug)^0.5.
         c_m_eta_1: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_2 in C_M, 1/(ft*slug)^0.5.
         c_m_eta_2: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of eta_3 in C_M, 1/(ft*slug)^0.5.
         c_m_eta_3: ["1/(ft*slug)^0.5", "1/(m*kg)^0.5", 0.4741402145987097],
+        /// Coefficient of alpha^2 in C_N_1, (ft/slug)^0.5/rad^2.
         c_n_1_alpha_2: ["(ft/slug)^0.5/rad^2", "(m/kg)^0.5/rad^2", 0.14451793740968671],
+        /// Coefficient of alpha in C_N_1, (ft/slug)^0.5/rad.
         c_n_1_alpha: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Coefficient of delta_e in C_N_1, (ft/slug)^0.5/rad.
         c_n_1_delta_e: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Coefficient of delta_c in C_N_1, (ft/slug)^0.5/rad.
         c_n_1_delta_c: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Constant part of C_N_1, (ft/slug)^0.5.
         c_n_1_0: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        /// Coefficient of alpha^2 in C_N_2, (ft/slug)^0.5/rad^2.
         c_n_2_alpha_2: ["(ft/slug)^0.5/rad^2", "(m/kg)^0.5/rad^2", 0.14451793740968671],
+        /// Coefficient of alpha in C_N_2, (ft/slug)^0.5/rad.
         c_n_2_alpha: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Coefficient of delta_e in C_N_2, (ft/slug)^0.5/rad.
         c_n_2_delta_e: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Coefficient of delta_c in C_N_2, (ft/slug)^0.5/rad.
         c_n_2_delta_c: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Constant part of C_N_2, (ft/slug)^0.5.
         c_n_2_0: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
+        /// Coefficient of alpha^2 in C_N_3, (ft/slug)^0.5/rad^2.
         c_n_3_alpha_2: ["(ft/slug)^0.5/rad^2", "(m/kg)^0.5/rad^2", 0.14451793740968671],
+        /// Coefficient of alpha in C_N_3, (ft/slug)^0.5/rad.
         c_n_3_alpha: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Coefficient of delta_e in C_N_3, (ft/slug)^0.5/rad.
         c_n_3_delta_e: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Coefficient of delta_c in C_N_3, (ft/slug)^0.5/rad.
         c_n_3_delta_c: ["(ft/slug)^0.5/rad", "(m/kg)^0.5/rad", 0.14451793740968671],
+        /// Constant part of C_N_3, (ft/slug)^0.5.
         c_n_3_0: ["(ft/slug)^0.5", "(m/kg)^0.5", 0.14451793740968671],
     }
 }

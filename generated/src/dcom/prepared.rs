@@ -6,431 +6,81 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
-        /// Air density at the reference altitude, slug/ft^3.
-        pub rho_0: R,
-        /// Reference altitude of the air density, ft.
-        pub h_0: R,
-        /// `1 / h_s`.
-        pub inv_h_s: R,
-        /// Reference area, ft.
-        pub s: R,
-        /// Coefficient of phi*alpha^3 in C_T, 1/rad^3.
-        pub c_t_phi_alpha_3: R,
-        /// Coefficient of phi*alpha^2 in C_T, 1/rad^2.
-        pub c_t_phi_alpha_2: R,
-        /// Coefficient of phi*alpha in C_T, 1/rad.
-        pub c_t_phi_alpha: R,
-        /// Coefficient of phi in C_T, dimensionless.
-        pub c_t_phi: R,
-        /// Coefficient of alpha^3 in C_T, 1/rad^3.
-        pub c_t_alpha_3: R,
-        /// Coefficient of alpha^2 in C_T, 1/rad^2.
-        pub c_t_alpha_2: R,
-        /// Coefficient of alpha in C_T, 1/rad.
-        pub c_t_alpha: R,
-        /// Constant part of C_T, dimensionless.
-        pub c_t_0: R,
-        /// Coefficient of eta_1 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_1: R,
-        /// Coefficient of eta_2 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_2: R,
-        /// Coefficient of eta_3 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_3: R,
-        /// Coefficient of alpha^2 in C_D, 1/rad^2.
-        pub c_d_alpha_2: R,
-        /// Coefficient of alpha in C_D, 1/rad.
-        pub c_d_alpha: R,
-        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-        pub c_d_delta_e_2: R,
-        /// Coefficient of delta_e in C_D, 1/rad.
-        pub c_d_delta_e: R,
-        /// Coefficient of delta_c^2 in C_D, 1/rad^2.
-        pub c_d_delta_c_2: R,
-        /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
-        pub canard_command: R,
         /// Canard deflection per elevator deflection, dimensionless.
-        pub canard_gain: R,
-        /// Coefficient of delta_c in C_D, 1/rad.
-        pub c_d_delta_c: R,
-        /// Constant part of C_D, dimensionless.
-        pub c_d_0: R,
-        /// Coefficient of eta_1 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_1: R,
-        /// Coefficient of eta_2 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_2: R,
-        /// Coefficient of eta_3 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_3: R,
-        /// `1 / m`.
-        pub inv_m: R,
-        /// Acceleration of gravity at sea level, ft/s^2.
-        pub g: R,
+        canard_gain,
         /// Curvature of the Earth, 0 where it is flat, 1/ft.
-        pub earth_curvature: R,
-        /// `R::HALF * s * inv_m`.
-        pub half_s_over_m: R,
-        /// Coefficient of alpha in C_L, 1/rad.
-        pub c_l_alpha: R,
+        earth_curvature,
         /// Lift coefficient per elevator deflection that the slaved canard leaves, 1/rad.
-        pub elevator_lift: R,
-        /// Coefficient of delta_c in C_L, 1/rad.
-        pub c_l_delta_c: R,
-        /// Constant part of C_L, dimensionless.
-        pub c_l_0: R,
-        /// Coefficient of eta_1 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_1: R,
-        /// Coefficient of eta_2 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_2: R,
-        /// Coefficient of eta_3 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_3: R,
-        /// Thrust-to-moment coupling arm, ft.
-        pub z_t: R,
-        /// Coefficient of alpha^2 in C_M, 1/rad^2.
-        pub c_m_alpha_2: R,
-        /// Coefficient of alpha in C_M, 1/rad.
-        pub c_m_alpha: R,
-        /// Coefficient of delta_e in C_M, 1/rad.
-        pub c_m_delta_e: R,
-        /// Coefficient of delta_c in C_M, 1/rad.
-        pub c_m_delta_c: R,
-        /// Constant part of C_M, dimensionless.
-        pub c_m_0: R,
-        /// Coefficient of eta_1 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_1: R,
-        /// Coefficient of eta_2 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_2: R,
-        /// Coefficient of eta_3 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_3: R,
-        /// Mean aerodynamic chord, ft.
-        pub c_bar: R,
-        /// `1 / i_yy`.
-        pub inv_i_yy: R,
-        /// Coefficient of alpha^2 in C_N_1, (ft/slug)^0.5/rad^2.
-        pub c_n_1_alpha_2: R,
-        /// Coefficient of alpha in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_alpha: R,
-        /// Coefficient of delta_e in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_delta_e: R,
-        /// Coefficient of delta_c in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_delta_c: R,
-        /// Constant part of C_N_1, (ft/slug)^0.5.
-        pub c_n_1_0: R,
+        elevator_lift,
         /// Damping of mode 1, rad/s.
-        pub damping_1: R,
+        damping_1,
         /// Stiffness of mode 1, rad^2/s^2.
-        pub stiffness_1: R,
-        /// Coefficient of alpha^2 in C_N_2, (ft/slug)^0.5/rad^2.
-        pub c_n_2_alpha_2: R,
-        /// Coefficient of alpha in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_alpha: R,
-        /// Coefficient of delta_e in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_delta_e: R,
-        /// Coefficient of delta_c in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_delta_c: R,
-        /// Constant part of C_N_2, (ft/slug)^0.5.
-        pub c_n_2_0: R,
+        stiffness_1,
         /// Damping of mode 2, rad/s.
-        pub damping_2: R,
+        damping_2,
         /// Stiffness of mode 2, rad^2/s^2.
-        pub stiffness_2: R,
-        /// Coefficient of alpha^2 in C_N_3, (ft/slug)^0.5/rad^2.
-        pub c_n_3_alpha_2: R,
-        /// Coefficient of alpha in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_alpha: R,
-        /// Coefficient of delta_e in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_delta_e: R,
-        /// Coefficient of delta_c in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_delta_c: R,
-        /// Constant part of C_N_3, (ft/slug)^0.5.
-        pub c_n_3_0: R,
+        stiffness_2,
         /// Damping of mode 3, rad/s.
-        pub damping_3: R,
+        damping_3,
         /// Stiffness of mode 3, rad^2/s^2.
-        pub stiffness_3: R,
-        /// `2 * g`.
-        pub two_g: R,
-        /// `3 * c_t_alpha_3`.
-        pub three_c_t_alpha_3: R,
-        /// `2 * c_t_alpha_2`.
-        pub two_c_t_alpha_2: R,
-        /// `3 * c_t_phi_alpha_3`.
-        pub three_c_t_phi_alpha_3: R,
-        /// `2 * c_t_phi_alpha_2`.
-        pub two_c_t_phi_alpha_2: R,
-        /// `2 * c_d_alpha_2`.
-        pub two_c_d_alpha_2: R,
-        /// `2 * c_m_alpha_2`.
-        pub two_c_m_alpha_2: R,
-        /// `c_bar_c_m_eta_1 + z_t * c_t_eta_1`.
-        pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: R,
-        /// `c_bar_c_m_eta_2 + z_t * c_t_eta_2`.
-        pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: R,
-        /// `c_bar_c_m_eta_3 + z_t * c_t_eta_3`.
-        pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: R,
-        /// `2 * c_n_1_alpha_2`.
-        pub two_c_n_1_alpha_2: R,
-        /// `-stiffness_1`.
-        pub minus_stiffness_1: R,
-        /// `-damping_1`.
-        pub minus_damping_1: R,
-        /// `2 * c_n_2_alpha_2`.
-        pub two_c_n_2_alpha_2: R,
-        /// `-stiffness_2`.
-        pub minus_stiffness_2: R,
-        /// `-damping_2`.
-        pub minus_damping_2: R,
-        /// `2 * c_n_3_alpha_2`.
-        pub two_c_n_3_alpha_2: R,
-        /// `-stiffness_3`.
-        pub minus_stiffness_3: R,
-        /// `-damping_3`.
-        pub minus_damping_3: R,
-        /// `2 * c_d_delta_e_2`.
-        pub two_c_d_delta_e_2: R,
-        /// `2 * c_d_delta_c_2`.
-        pub two_c_d_delta_c_2: R,
-        /// `c_l_delta_c * canard_command`.
-        pub c_l_delta_c_canard_command: R,
-        /// `c_bar * d_c_m_d_delta_e`.
-        pub c_bar_times_d_c_m_d_delta_e: R,
-        /// `c_bar * c_m_delta_c * canard_command`.
-        pub c_bar_c_m_delta_c_canard_command: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_1_d_delta_e: R,
-        /// `c_n_1_delta_c * canard_command`.
-        pub c_n_1_delta_c_canard_command: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_2_d_delta_e: R,
-        /// `c_n_2_delta_c * canard_command`.
-        pub c_n_2_delta_c_canard_command: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_3_d_delta_e: R,
-        /// `c_n_3_delta_c * canard_command`.
-        pub c_n_3_delta_c_canard_command: R,
-        /// `inv_m * inv_m`.
-        pub inv_m_2: R,
-        /// `inv_h_s * inv_h_s`.
-        pub inv_h_s_2: R,
-        /// `2 * g * earth_curvature * inv_r_e`.
-        pub two_g_earth_curvature_over_r_e: R,
-        /// `c_l_delta_e * inv_c_l_delta_c * inv_m`.
-        pub c_l_delta_e_over_c_l_delta_c_m: R,
-        /// `R::from_f64(-2.0) * g * inv_r_e`.
-        pub minus_two_g_over_r_e: R,
-        /// `canard_slaving * inv_c_l_delta_c * inv_m`.
-        pub canard_slaving_over_c_l_delta_c_m: R,
-        /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_m`.
-        pub canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m: R,
-        /// `R::from_f64(-0.5) * inv_m_2`.
-        pub minus_half_inv_m_2: R,
-        /// `R::HALF * inv_m`.
-        pub half_over_m: R,
-        /// `1 / r_e`.
-        pub inv_r_e: R,
-        /// `earth_curvature * earth_curvature`.
-        pub earth_curvature_2: R,
-        /// Coefficient of delta_e in C_L, 1/rad.
-        pub c_l_delta_e: R,
-        /// Derivative of lift coefficient per elevator deflection that the slaved canard leaves with respect to
-        /// c_l_delta_e, dimensionless.
-        pub d_elevator_lift_d_c_l_delta_e: R,
-        /// `R::HALF * inv_m_2`.
-        pub half_inv_m_2: R,
-        /// `R::from_f64(-0.5) * inv_m`.
-        pub minus_half_over_m: R,
-        /// `R::from_f64(-0.5) * s * inv_m`.
-        pub minus_half_s_over_m: R,
-        /// `R::HALF * c_bar`.
-        pub half_c_bar: R,
-        /// `R::HALF * z_t`.
-        pub half_z_t: R,
-        /// `c_bar * c_m_delta_c * inv_i_yy`.
-        pub c_bar_c_m_delta_c_over_i_yy: R,
-        /// `c_bar * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c * inv_i_yy`.
-        pub c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy: R,
-        /// `z_t * inv_i_yy`.
-        pub z_t_over_i_yy: R,
-        /// `c_bar * c_m_delta_c * canard_slaving * inv_c_l_delta_c * inv_i_yy`.
-        pub c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy: R,
-        /// `c_bar * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2 * inv_i_yy`.
-        pub c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy: R,
-        /// `c_bar * inv_i_yy`.
-        pub c_bar_over_i_yy: R,
-        /// `R::HALF * s`.
-        pub half_s: R,
-        /// `2 * zeta_1`.
-        pub two_zeta_1: R,
-        /// `2 * omega_1`.
-        pub two_omega_1: R,
-        /// `R::from_f64(-2.0) * omega_1`.
-        pub minus_two_omega_1: R,
-        /// `c_n_1_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-        pub c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c: R,
-        /// `c_n_1_delta_c * canard_slaving * inv_c_l_delta_c`.
-        pub c_n_1_delta_c_canard_slaving_over_c_l_delta_c: R,
-        /// `c_n_1_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
-        /// `2 * zeta_2`.
-        pub two_zeta_2: R,
-        /// `2 * omega_2`.
-        pub two_omega_2: R,
-        /// `R::from_f64(-2.0) * omega_2`.
-        pub minus_two_omega_2: R,
-        /// `c_n_2_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-        pub c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c: R,
-        /// `c_n_2_delta_c * canard_slaving * inv_c_l_delta_c`.
-        pub c_n_2_delta_c_canard_slaving_over_c_l_delta_c: R,
-        /// `c_n_2_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
-        /// `2 * zeta_3`.
-        pub two_zeta_3: R,
-        /// `2 * omega_3`.
-        pub two_omega_3: R,
-        /// `R::from_f64(-2.0) * omega_3`.
-        pub minus_two_omega_3: R,
-        /// `c_n_3_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-        pub c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c: R,
-        /// `c_n_3_delta_c * canard_slaving * inv_c_l_delta_c`.
-        pub c_n_3_delta_c_canard_slaving_over_c_l_delta_c: R,
-        /// `c_n_3_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
-        /// `2 * earth_curvature_2`.
-        pub two_earth_curvature_2: R,
-        /// `R::from_f64(6.0) * c_t_alpha_3`.
-        pub six_c_t_alpha_3: R,
-        /// `R::from_f64(6.0) * c_t_phi_alpha_3`.
-        pub six_c_t_phi_alpha_3: R,
-        /// `c_bar * s`.
-        pub c_bar_s: R,
-        /// `2 * c_bar * c_m_alpha_2`.
-        pub two_c_bar_c_m_alpha_2: R,
-        /// `c_bar * c_m_eta_1`.
-        pub c_bar_c_m_eta_1: R,
-        /// `c_bar * c_m_eta_2`.
-        pub c_bar_c_m_eta_2: R,
-        /// `c_bar * c_m_eta_3`.
-        pub c_bar_c_m_eta_3: R,
-        /// Intensity of the white noise w_gamma, rad*s^0.5.
-        pub w_gamma: R,
-        /// Intensity of the white noise w_alpha, rad*s^0.5.
-        pub w_alpha: R,
-        /// Intensity of the white noise w_Q, rad/s^0.5.
-        pub w_q: R,
-        /// Intensity of the white noise on mode 1, (ft*slug)^0.5/s^1.5.
-        pub sigma_1: R,
-        /// `sigma_2 * shared_noise`.
-        pub sigma_2_shared_noise: R,
-        /// `sigma_2 * own_noise`.
-        pub sigma_2_own_noise: R,
-        /// `sigma_3 * shared_noise`.
-        pub sigma_3_shared_noise: R,
-        /// `sigma_3 * own_noise`.
-        pub sigma_3_own_noise: R,
-        /// Intensity of the white noise on mode 2, (ft*slug)^0.5/s^1.5.
-        pub sigma_2: R,
-        /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
-        pub shared_noise: R,
+        stiffness_3,
         /// Share of its own noise in what drives a mode, dimensionless.
-        pub own_noise: R,
-        /// Intensity of the white noise on mode 3, (ft*slug)^0.5/s^1.5.
-        pub sigma_3: R,
-        /// `w_gamma * w_gamma`.
-        pub w_gamma_2: R,
-        /// `w_alpha * w_gamma`.
-        pub w_alpha_w_gamma: R,
-        /// `w_alpha * w_alpha`.
-        pub w_alpha_2: R,
-        /// `w_alpha * w_q`.
-        pub w_alpha_w_q: R,
-        /// `R::HALF * w_gamma_2`.
-        pub half_w_gamma_2: R,
-        /// `R::HALF * w_alpha_2`.
-        pub half_w_alpha_2: R,
-        /// `c_l_delta_recip()`.
-        pub inv_c_l_delta_c: R,
-        /// Derivative of pitching-moment coefficient with respect to delta_e, 1/rad.
-        pub d_c_m_d_delta_e: R,
-        /// `inv_c_l_delta_c * inv_c_l_delta_c`.
-        pub inv_c_l_delta_c_2: R,
+        own_noise,
+        inv_h_s, inv_m, half_s_over_m, inv_i_yy, two_g, three_c_t_alpha_3, two_c_t_alpha_2, three_c_t_phi_alpha_3,
+        two_c_t_phi_alpha_2, two_c_d_alpha_2, two_c_m_alpha_2, c_bar_c_m_eta_1_plus_z_t_c_t_eta_1,
+        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2, c_bar_c_m_eta_3_plus_z_t_c_t_eta_3, two_c_n_1_alpha_2, minus_stiffness_1,
+        minus_damping_1, two_c_n_2_alpha_2, minus_stiffness_2, minus_damping_2, two_c_n_3_alpha_2, minus_stiffness_3,
+        minus_damping_3, two_c_d_delta_e_2, two_c_d_delta_c_2, c_l_delta_c_canard_command, c_bar_times_d_c_m_d_delta_e,
+        c_bar_c_m_delta_c_canard_command, d_c_n_1_d_delta_e, c_n_1_delta_c_canard_command, d_c_n_2_d_delta_e,
+        c_n_2_delta_c_canard_command, d_c_n_3_d_delta_e, c_n_3_delta_c_canard_command, inv_m_2, inv_h_s_2,
+        two_g_earth_curvature_over_r_e, c_l_delta_e_over_c_l_delta_c_m, minus_two_g_over_r_e,
+        canard_slaving_over_c_l_delta_c_m, canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m, minus_half_inv_m_2,
+        half_over_m, inv_r_e, earth_curvature_2, d_elevator_lift_d_c_l_delta_e, half_inv_m_2, minus_half_over_m,
+        minus_half_s_over_m, half_c_bar, half_z_t, c_bar_c_m_delta_c_over_i_yy,
+        c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy, z_t_over_i_yy,
+        c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy,
+        c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy, c_bar_over_i_yy, half_s, two_zeta_1,
+        two_omega_1, minus_two_omega_1, c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c,
+        c_n_1_delta_c_canard_slaving_over_c_l_delta_c, c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+        two_zeta_2, two_omega_2, minus_two_omega_2, c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c,
+        c_n_2_delta_c_canard_slaving_over_c_l_delta_c, c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+        two_zeta_3, two_omega_3, minus_two_omega_3, c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c,
+        c_n_3_delta_c_canard_slaving_over_c_l_delta_c, c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+        two_earth_curvature_2, six_c_t_alpha_3, six_c_t_phi_alpha_3, c_bar_s, two_c_bar_c_m_alpha_2, c_bar_c_m_eta_1,
+        c_bar_c_m_eta_2, c_bar_c_m_eta_3, sigma_2_shared_noise, sigma_2_own_noise, sigma_3_shared_noise,
+        sigma_3_own_noise, w_gamma_2, w_alpha_w_gamma, w_alpha_2, w_alpha_w_q, half_w_gamma_2, half_w_alpha_2,
+        inv_c_l_delta_c, d_c_m_d_delta_e, inv_c_l_delta_c_2,
+    }
+    from Parameters {
+        rho_0, h_0,
+        s,
+        c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1,
+        c_t_eta_2, c_t_eta_3,
+        c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_delta_c_2,
+        canard_command,
+        c_d_delta_c, c_d_0, c_d_eta_1, c_d_eta_2, c_d_eta_3,
+        g,
+        c_l_alpha, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3,
+        z_t,
+        c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_delta_c, c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3,
+        c_bar,
+        c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0,
+        c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0,
+        c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        c_l_delta_e,
+        w_gamma, w_alpha, w_q, sigma_1, sigma_2,
+        shared_noise,
+        sigma_3,
     }
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.rho_0 = p.rho_0;
-    c.h_0 = p.h_0;
-    c.s = p.s;
-    c.c_t_phi_alpha_3 = p.c_t_phi_alpha_3;
-    c.c_t_phi_alpha_2 = p.c_t_phi_alpha_2;
-    c.c_t_phi_alpha = p.c_t_phi_alpha;
-    c.c_t_phi = p.c_t_phi;
-    c.c_t_alpha_3 = p.c_t_alpha_3;
-    c.c_t_alpha_2 = p.c_t_alpha_2;
-    c.c_t_alpha = p.c_t_alpha;
-    c.c_t_0 = p.c_t_0;
-    c.c_t_eta_1 = p.c_t_eta_1;
-    c.c_t_eta_2 = p.c_t_eta_2;
-    c.c_t_eta_3 = p.c_t_eta_3;
-    c.c_d_alpha_2 = p.c_d_alpha_2;
-    c.c_d_alpha = p.c_d_alpha;
-    c.c_d_delta_e_2 = p.c_d_delta_e_2;
-    c.c_d_delta_e = p.c_d_delta_e;
-    c.c_d_delta_c_2 = p.c_d_delta_c_2;
-    c.canard_command = p.canard_command;
-    c.c_d_delta_c = p.c_d_delta_c;
-    c.c_d_0 = p.c_d_0;
-    c.c_d_eta_1 = p.c_d_eta_1;
-    c.c_d_eta_2 = p.c_d_eta_2;
-    c.c_d_eta_3 = p.c_d_eta_3;
-    c.g = p.g;
-    c.c_l_alpha = p.c_l_alpha;
-    c.c_l_delta_c = p.c_l_delta_c;
-    c.c_l_0 = p.c_l_0;
-    c.c_l_eta_1 = p.c_l_eta_1;
-    c.c_l_eta_2 = p.c_l_eta_2;
-    c.c_l_eta_3 = p.c_l_eta_3;
-    c.z_t = p.z_t;
-    c.c_m_alpha_2 = p.c_m_alpha_2;
-    c.c_m_alpha = p.c_m_alpha;
-    c.c_m_delta_e = p.c_m_delta_e;
-    c.c_m_delta_c = p.c_m_delta_c;
-    c.c_m_0 = p.c_m_0;
-    c.c_m_eta_1 = p.c_m_eta_1;
-    c.c_m_eta_2 = p.c_m_eta_2;
-    c.c_m_eta_3 = p.c_m_eta_3;
-    c.c_bar = p.c_bar;
-    c.c_n_1_alpha_2 = p.c_n_1_alpha_2;
-    c.c_n_1_alpha = p.c_n_1_alpha;
-    c.c_n_1_delta_e = p.c_n_1_delta_e;
-    c.c_n_1_delta_c = p.c_n_1_delta_c;
-    c.c_n_1_0 = p.c_n_1_0;
-    c.c_n_2_alpha_2 = p.c_n_2_alpha_2;
-    c.c_n_2_alpha = p.c_n_2_alpha;
-    c.c_n_2_delta_e = p.c_n_2_delta_e;
-    c.c_n_2_delta_c = p.c_n_2_delta_c;
-    c.c_n_2_0 = p.c_n_2_0;
-    c.c_n_3_alpha_2 = p.c_n_3_alpha_2;
-    c.c_n_3_alpha = p.c_n_3_alpha;
-    c.c_n_3_delta_e = p.c_n_3_delta_e;
-    c.c_n_3_delta_c = p.c_n_3_delta_c;
-    c.c_n_3_0 = p.c_n_3_0;
-    c.c_l_delta_e = p.c_l_delta_e;
-    c.w_gamma = p.w_gamma;
-    c.w_alpha = p.w_alpha;
-    c.w_q = p.w_q;
-    c.sigma_1 = p.sigma_1;
-    c.sigma_2 = p.sigma_2;
-    c.shared_noise = p.shared_noise;
-    c.sigma_3 = p.sigma_3;
-
     // Gravity, (1)
     c.inv_r_e = p.r_e.recip();
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Gravity, (1)
     c.earth_curvature = p.spherical_earth * c.inv_r_e; // 1/ft
 
     // Canard, (4)
@@ -494,17 +144,17 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.inv_m_2 = c.inv_m * c.inv_m;
     c.inv_h_s_2 = c.inv_h_s * c.inv_h_s;
     c.two_g_earth_curvature_over_r_e = R::TWO * p.g * c.earth_curvature * c.inv_r_e;
-    c.c_l_delta_e_over_c_l_delta_c_m = p.c_l_delta_e * c.inv_c_l_delta_c * c.inv_m;
-    c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
 }
 
 /// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Further values
+    c.c_l_delta_e_over_c_l_delta_c_m = p.c_l_delta_e * c.inv_c_l_delta_c * c.inv_m;
+    c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c_m = p.canard_slaving * c.inv_c_l_delta_c * c.inv_m;
     c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
-    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m = p.canard_slaving
-        * p.c_l_delta_e * c.inv_c_l_delta_c_2 * c.inv_m;
+    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m = p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2
+        * c.inv_m;
     c.minus_half_inv_m_2 = R::from_f64(-0.5) * c.inv_m_2;
     c.half_over_m = R::HALF * c.inv_m;
     c.earth_curvature_2 = c.earth_curvature * c.earth_curvature;
@@ -514,43 +164,36 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.half_c_bar = R::HALF * p.c_bar;
     c.half_z_t = R::HALF * p.z_t;
     c.c_bar_c_m_delta_c_over_i_yy = p.c_bar * p.c_m_delta_c * c.inv_i_yy;
-    c.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c
-        * p.c_l_delta_e * c.inv_c_l_delta_c * c.inv_i_yy;
-    c.z_t_over_i_yy = p.z_t * c.inv_i_yy;
-    c.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c
-        * p.canard_slaving * c.inv_c_l_delta_c * c.inv_i_yy;
-    c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar
-        * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2
+    c.c_bar_c_m_delta_c_c_l_delta_e_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c
         * c.inv_i_yy;
+    c.z_t_over_i_yy = p.z_t * c.inv_i_yy;
+    c.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c * p.canard_slaving
+        * c.inv_c_l_delta_c * c.inv_i_yy;
+    c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar * p.c_m_delta_c
+        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2 * c.inv_i_yy;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
     c.half_s = R::HALF * p.s;
     c.two_zeta_1 = R::TWO * p.zeta_1;
     c.two_omega_1 = R::TWO * p.omega_1;
     c.minus_two_omega_1 = R::from_f64(-2.0) * p.omega_1;
-    c.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_1_delta_c * p.c_l_delta_e
-        * c.inv_c_l_delta_c;
-    c.c_n_1_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_1_delta_c * p.canard_slaving
-        * c.inv_c_l_delta_c;
-    c.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_1_delta_c
-        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
+    c.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_1_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
+    c.c_n_1_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_1_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
+    c.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_1_delta_c * p.canard_slaving * p.c_l_delta_e
+        * c.inv_c_l_delta_c_2;
     c.two_zeta_2 = R::TWO * p.zeta_2;
     c.two_omega_2 = R::TWO * p.omega_2;
     c.minus_two_omega_2 = R::from_f64(-2.0) * p.omega_2;
-    c.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_2_delta_c * p.c_l_delta_e
-        * c.inv_c_l_delta_c;
-    c.c_n_2_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_2_delta_c * p.canard_slaving
-        * c.inv_c_l_delta_c;
-    c.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_2_delta_c
-        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
+    c.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_2_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
+    c.c_n_2_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_2_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
+    c.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_2_delta_c * p.canard_slaving * p.c_l_delta_e
+        * c.inv_c_l_delta_c_2;
     c.two_zeta_3 = R::TWO * p.zeta_3;
     c.two_omega_3 = R::TWO * p.omega_3;
     c.minus_two_omega_3 = R::from_f64(-2.0) * p.omega_3;
-    c.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_3_delta_c * p.c_l_delta_e
-        * c.inv_c_l_delta_c;
-    c.c_n_3_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_3_delta_c * p.canard_slaving
-        * c.inv_c_l_delta_c;
-    c.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_3_delta_c
-        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
+    c.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_3_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
+    c.c_n_3_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_3_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
+    c.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_3_delta_c * p.canard_slaving * p.c_l_delta_e
+        * c.inv_c_l_delta_c_2;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
     c.six_c_t_alpha_3 = R::from_f64(6.0) * p.c_t_alpha_3;
     c.six_c_t_phi_alpha_3 = R::from_f64(6.0) * p.c_t_phi_alpha_3;
@@ -572,9 +215,8 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 ///
 /// 149 operations: 10 additions, 133 multiplications, 5 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
+    let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);
     prepare_part_2(&mut c, p);
-    prepare_part_3(&mut c, p);
     c
 }

@@ -6,100 +6,84 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Quantities of the drift that other functions need.
+    /// Quantities of the drift that other functions need. A field without a description is what its name says:
+    /// its formula and unit stand in [`intermediates`].
     pub struct Intermediates<R> {
         /// Air density over its reference, dimensionless.
-        pub density_ratio: R,
+        density_ratio,
         /// Air density, slug/ft^3.
-        pub density: R,
-        /// `x.velocity * x.velocity`.
-        pub velocity_2: R,
+        density,
         /// Dynamic pressure, lb/ft^2.
-        pub dynamic_pressure: R,
+        dynamic_pressure,
         /// Dynamic pressure times reference area, lb/ft.
-        pub reference_force: R,
+        reference_force,
         /// Sin of the angle of attack, dimensionless.
-        pub sin_alpha: R,
+        sin_alpha,
         /// Cos of the angle of attack, dimensionless.
-        pub cos_alpha: R,
+        cos_alpha,
         /// Sin of the flight-path angle, dimensionless.
-        pub sin_gamma: R,
+        sin_gamma,
         /// Cos of the flight-path angle, dimensionless.
-        pub cos_gamma: R,
+        cos_gamma,
         /// Radius of the Earth over the distance to its centre, dimensionless.
-        pub radius_ratio: R,
-        /// `i.radius_ratio * i.radius_ratio`.
-        pub radius_ratio_2: R,
+        radius_ratio,
         /// Acceleration of gravity at altitude, ft/s^2.
-        pub gravity: R,
-        /// `1 / x.velocity`.
-        pub inv_velocity: R,
+        gravity,
         /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-        pub gravity_turn: R,
+        gravity_turn,
         /// Turn rate per force coefficient across the flight path, 1/s.
-        pub turn_factor: R,
+        turn_factor,
         /// Canard deflection as commanded, rad.
-        pub canard_commanded: R,
+        canard_commanded,
         /// Canard deflection, commanded and slaved, rad.
-        pub canard_deflection: R,
-        /// `x.alpha * x.alpha`.
-        pub alpha_2: R,
-        /// `x.alpha * i.alpha_2`.
-        pub alpha_3: R,
+        canard_deflection,
         /// Slope of the thrust coefficient in the fuel equivalence ratio, dimensionless.
-        pub c_t_phi: R,
+        c_t_phi,
         /// Thrust coefficient, dimensionless.
-        pub c_t: R,
+        c_t,
         /// Lift coefficient, dimensionless.
-        pub c_l: R,
-        /// `u.delta_e * u.delta_e`.
-        pub delta_e_2: R,
-        /// `i.canard_deflection * i.canard_deflection`.
-        pub canard_deflection_2: R,
+        c_l,
         /// Drag coefficient, dimensionless.
-        pub c_d: R,
+        c_d,
         /// Pitching-moment coefficient, dimensionless.
-        pub c_m: R,
+        c_m,
         /// Thrust, lb/ft.
-        pub thrust: R,
+        thrust,
         /// Drag, lb/ft.
-        pub drag: R,
+        drag,
         /// Pitching moment, lb.
-        pub pitching_moment: R,
+        pitching_moment,
         /// Coefficient of the force across the flight path, dimensionless.
-        pub normal_coefficient: R,
+        normal_coefficient,
         /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
-        pub c_n_1: R,
+        c_n_1,
         /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
-        pub c_n_2: R,
+        c_n_2,
         /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
-        pub c_n_3: R,
+        c_n_3,
         /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-        pub generalized_force_1: R,
+        generalized_force_1,
         /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-        pub generalized_force_2: R,
+        generalized_force_2,
         /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
-        pub generalized_force_3: R,
+        generalized_force_3,
         /// Force along the flight path, lb/ft.
-        pub path_force: R,
+        path_force,
         /// Rate of the velocity, ft/s^2.
-        pub velocity_rate: R,
+        velocity_rate,
         /// Rate of the altitude, ft/s.
-        pub altitude_rate: R,
+        altitude_rate,
         /// Rate of the flight-path angle, rad/s.
-        pub gamma_rate: R,
+        gamma_rate,
         /// Pitch acceleration, rad/s^2.
-        pub pitch_acceleration: R,
+        pitch_acceleration,
+        velocity_2, radius_ratio_2, inv_velocity, alpha_2, alpha_3, delta_e_2, canard_deflection_2,
     }
 }
 
 /// Computes [`Intermediates`].
 #[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
+pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
 
     // Air, (2)
@@ -118,8 +102,7 @@ pub fn intermediates<R: Real>(
     i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
     i.gravity = p.g * i.radius_ratio_2; // ft/s^2
     i.inv_velocity = x.velocity.recip();
-    i.gravity_turn = i.gravity * i.inv_velocity
-        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
+    i.gravity_turn = i.gravity * i.inv_velocity - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
     i.turn_factor = i.density * x.velocity * p.half_s_over_m; // 1/s
@@ -131,10 +114,7 @@ pub fn intermediates<R: Real>(
     // Curve fits, (3)
     i.alpha_2 = x.alpha * x.alpha;
     i.alpha_3 = x.alpha * i.alpha_2;
-    i.c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * i.alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    i.c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * i.alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     i.c_t = p.c_t_0
         + i.c_t_phi * u.phi
         + p.c_t_alpha_3 * i.alpha_3
@@ -210,111 +190,28 @@ pub fn intermediates<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the Jacobians that other functions need.
+    /// Quantities of the Jacobians that other functions need. A field without a description is what its name
+    /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-        pub d_dynamic_pressure_d_velocity: R,
-        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-        pub d_reference_force_d_velocity: R,
-        /// Derivative of thrust with respect to velocity, lb*s/ft^2.
-        pub d_thrust_d_velocity: R,
-        /// `i.inv_velocity * i.inv_velocity`.
-        pub inv_velocity_2: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// velocity, 1/ft.
-        pub d_gravity_turn_d_velocity: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-        pub d_turn_factor_d_velocity: R,
-        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-        pub d_radius_ratio_d_altitude: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-        pub d_gravity_d_altitude: R,
-        /// Derivative of air density with respect to altitude, slug/ft^4.
-        pub d_density_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-        pub d_reference_force_d_altitude: R,
-        /// Derivative of thrust with respect to altitude, lb/ft^2.
-        pub d_thrust_d_altitude: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// altitude, 1/s/ft.
-        pub d_gravity_turn_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-        pub d_turn_factor_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to gamma, ft/s^2/rad.
-        pub d_velocity_rate_d_gamma: R,
-        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-        pub d_altitude_rate_d_gamma: R,
-        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-        pub d_cos_gamma_d_gamma: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma, 1/s.
-        pub d_gamma_rate_d_gamma: R,
-        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-        pub d_cos_alpha_d_alpha: R,
-        /// Derivative of thrust coefficient with respect to alpha, 1/rad.
-        pub d_c_t_d_alpha: R,
-        /// Derivative of thrust with respect to alpha, lb/ft/rad.
-        pub d_thrust_d_alpha: R,
-        /// Derivative of drag coefficient with respect to alpha, 1/rad.
-        pub d_c_d_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to alpha, ft/s^2/rad.
-        pub d_velocity_rate_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha, 1/rad.
-        pub d_normal_coefficient_d_alpha: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha, 1/s.
-        pub d_force_turn_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
-        pub d_c_m_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to alpha, 1/s^2.
-        pub d_pitch_acceleration_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_1_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-        pub d_generalized_force_1_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_2_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-        pub d_generalized_force_2_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_3_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-        pub d_generalized_force_3_d_alpha: R,
-        /// `i.cos_alpha * c_t_eta_1`.
-        pub cos_alpha_c_t_eta_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to eta_1, 1/(ft*slug)^0.5.
-        pub d_normal_coefficient_d_eta_1: R,
-        /// `i.cos_alpha * c_t_eta_2`.
-        pub cos_alpha_c_t_eta_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to eta_2, 1/(ft*slug)^0.5.
-        pub d_normal_coefficient_d_eta_2: R,
-        /// `i.cos_alpha * c_t_eta_3`.
-        pub cos_alpha_c_t_eta_3: R,
-        /// Derivative of coefficient of the force across the flight path with respect to eta_3, 1/(ft*slug)^0.5.
-        pub d_normal_coefficient_d_eta_3: R,
-        /// Derivative of rate of the velocity with respect to phi, ft/s^2.
-        pub d_velocity_rate_d_phi: R,
-        /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
-        pub d_force_turn_d_phi: R,
         /// Partial derivative of drag coefficient with respect to canard deflection, commanded and slaved, 1/rad.
-        pub slope_of_c_d_in_canard_deflection: R,
-        /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
-        pub d_velocity_rate_d_delta_e: R,
-        /// Derivative of turn rate by the force across the flight path with respect to delta_e, 1/s.
-        pub d_force_turn_d_delta_e: R,
-        /// Derivative of rate of the velocity with respect to delta_c, ft/s^2/rad.
-        pub d_velocity_rate_d_delta_c: R,
-        /// Derivative of turn rate by the force across the flight path with respect to delta_c, 1/s.
-        pub d_force_turn_d_delta_c: R,
+        slope_of_c_d_in_canard_deflection,
+        d_dynamic_pressure_d_velocity, d_reference_force_d_velocity, d_thrust_d_velocity, inv_velocity_2,
+        d_gravity_turn_d_velocity, d_turn_factor_d_velocity, d_radius_ratio_d_altitude, d_gravity_d_altitude,
+        d_density_d_altitude, d_reference_force_d_altitude, d_thrust_d_altitude, d_gravity_turn_d_altitude,
+        d_turn_factor_d_altitude, d_velocity_rate_d_gamma, d_altitude_rate_d_gamma, d_cos_gamma_d_gamma,
+        d_gamma_rate_d_gamma, d_cos_alpha_d_alpha, d_c_t_d_alpha, d_thrust_d_alpha, d_c_d_d_alpha,
+        d_velocity_rate_d_alpha, d_normal_coefficient_d_alpha, d_force_turn_d_alpha, d_c_m_d_alpha,
+        d_pitch_acceleration_d_alpha, d_c_n_1_d_alpha, d_generalized_force_1_d_alpha, d_c_n_2_d_alpha,
+        d_generalized_force_2_d_alpha, d_c_n_3_d_alpha, d_generalized_force_3_d_alpha, cos_alpha_c_t_eta_1,
+        d_normal_coefficient_d_eta_1, cos_alpha_c_t_eta_2, d_normal_coefficient_d_eta_2, cos_alpha_c_t_eta_3,
+        d_normal_coefficient_d_eta_3, d_velocity_rate_d_phi, d_force_turn_d_phi, d_velocity_rate_d_delta_e,
+        d_force_turn_d_delta_e, d_velocity_rate_d_delta_c, d_force_turn_d_delta_c,
     }
 }
 
 /// Computes [`Slopes`].
 #[inline(always)]
-pub fn slopes<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Slopes<R> {
+pub fn slopes<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Slopes<R> {
     let mut s = Slopes::splat(R::ZERO);
 
     // Derivatives with respect to velocity
@@ -392,8 +289,7 @@ pub fn slopes<R: Real>(
     s.d_force_turn_d_phi = i.turn_factor * d_normal_coefficient_d_phi; // rad/s
 
     // Derivatives with respect to delta_e
-    s.slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * i.canard_deflection
-        + p.c_d_delta_c; // 1/rad
+    s.slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * i.canard_deflection + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
         + s.slope_of_c_d_in_canard_deflection * p.canard_gain; // 1/rad
@@ -415,69 +311,27 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the second derivatives that other functions, or several parts of these, need.
+    /// Quantities of the second derivatives that other functions, or several parts of these, need. A field
+    /// without a description is what its name says: its formula and unit stand in [`curvatures`].
     pub struct Curvatures<R> {
-        /// Derivative of rate of the velocity with respect to velocity and alpha, 1/s/rad.
-        pub d2_velocity_rate_d_velocity_d_alpha: R,
-        /// `i.density_ratio * inv_h_s`.
-        pub density_ratio_over_h_s: R,
-        /// Derivative of rate of the velocity with respect to altitude and gamma, 1/s^2/rad.
-        pub d2_velocity_rate_d_altitude_d_gamma: R,
-        /// Derivative of rate of the velocity with respect to altitude and alpha, 1/s^2/rad.
-        pub d2_velocity_rate_d_altitude_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to gamma and gamma, ft/s^2/rad^2.
-        pub d2_velocity_rate_d_gamma_d_gamma: R,
-        /// Derivative of rate of the velocity with respect to alpha and alpha, ft/s^2/rad^2.
-        pub d2_velocity_rate_d_alpha_d_alpha: R,
-        /// Derivative of rate of the altitude with respect to gamma and gamma, ft/s/rad^2.
-        pub d2_altitude_rate_d_gamma_d_gamma: R,
-        /// Derivative of rate of the flight-path angle with respect to velocity and gamma, 1/ft.
-        pub d2_gamma_rate_d_velocity_d_gamma: R,
-        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
-        pub d2_force_turn_d_velocity_d_alpha: R,
-        /// Derivative of rate of the flight-path angle with respect to altitude and gamma, 1/s/ft.
-        pub d2_gamma_rate_d_altitude_d_gamma: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
-        pub d2_force_turn_d_altitude_d_alpha: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma and gamma, 1/s/rad.
-        pub d2_gamma_rate_d_gamma_d_gamma: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha, 1/s/rad.
-        pub d2_force_turn_d_alpha_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
-        pub d2_pitch_acceleration_d_velocity_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
-        pub d2_pitch_acceleration_d_altitude_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to alpha and alpha, 1/s^2/rad.
-        pub d2_pitch_acceleration_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_1_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_1_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_1_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_2_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_2_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_2_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_3_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_3_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_3_d_alpha_d_alpha: R,
+        d2_velocity_rate_d_velocity_d_alpha, density_ratio_over_h_s, d2_velocity_rate_d_altitude_d_gamma,
+        d2_velocity_rate_d_altitude_d_alpha, d2_velocity_rate_d_gamma_d_gamma, d2_velocity_rate_d_alpha_d_alpha,
+        d2_altitude_rate_d_gamma_d_gamma, d2_gamma_rate_d_velocity_d_gamma, d2_force_turn_d_velocity_d_alpha,
+        d2_gamma_rate_d_altitude_d_gamma, d2_force_turn_d_altitude_d_alpha, d2_gamma_rate_d_gamma_d_gamma,
+        d2_force_turn_d_alpha_d_alpha, d2_pitch_acceleration_d_velocity_d_alpha,
+        d2_pitch_acceleration_d_altitude_d_alpha, d2_pitch_acceleration_d_alpha_d_alpha,
+        d2_generalized_force_1_d_velocity_d_alpha, d2_generalized_force_1_d_altitude_d_alpha,
+        d2_generalized_force_1_d_alpha_d_alpha, d2_generalized_force_2_d_velocity_d_alpha,
+        d2_generalized_force_2_d_altitude_d_alpha, d2_generalized_force_2_d_alpha_d_alpha,
+        d2_generalized_force_3_d_velocity_d_alpha, d2_generalized_force_3_d_altitude_d_alpha,
+        d2_generalized_force_3_d_alpha_d_alpha,
     }
 }
 
 /// Computes [`Curvatures`].
 #[inline(always)]
 pub fn curvatures<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> Curvatures<R> {
     let mut h = Curvatures::splat(R::ZERO);
 
@@ -505,8 +359,7 @@ pub fn curvatures<R: Real>(
 
     // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
-        + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
+    let d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
     let d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
         + u.phi * d2_c_t_phi_d_alpha_d_alpha; // 1/rad^2
@@ -520,16 +373,14 @@ pub fn curvatures<R: Real>(
 
     // Derivatives with respect to gamma
     h.d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    h.d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
+    h.d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
     h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * s.d_normal_coefficient_d_alpha; // 1/ft
 
     // Derivatives with respect to gamma
-    h.d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    h.d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
     h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
@@ -543,20 +394,16 @@ pub fn curvatures<R: Real>(
     let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * s.d_c_t_d_alpha * i.cos_alpha
         + i.sin_alpha * d2_c_t_d_alpha_d_alpha
         + i.c_t * s.d_cos_alpha_d_alpha; // 1/rad^2
-    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
     let d2_pitching_moment_d_velocity_d_alpha = s.d_reference_force_d_velocity * p.c_bar
         * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
-    h.d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy; // 1/s/ft
+    h.d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha * p.inv_i_yy; // 1/s/ft
     let d2_pitching_moment_d_altitude_d_alpha = s.d_reference_force_d_altitude * p.c_bar
         * s.d_c_m_d_alpha + p.z_t * d2_thrust_d_altitude_d_alpha; // lb/ft/rad
-    h.d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha
-        * p.inv_i_yy; // 1/s^2/ft
+    h.d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha * p.inv_i_yy; // 1/s^2/ft
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + p.two_c_bar_c_m_alpha_2 * i.reference_force; // lb/rad^2
-    h.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha
-        * p.inv_i_yy; // 1/s^2/rad
+    h.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
     h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.d_c_n_1_d_alpha; // slug^0.5/ft^0.5/s/rad
     h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
@@ -579,32 +426,20 @@ pub fn curvatures<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
+    /// a description is what its name says: its formula and unit stand in [`sensitivities`].
     pub struct Sensitivities<R> {
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
-        pub slope_of_radius_ratio_in_earth_curvature: R,
-        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
-        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
-        /// `i.reference_force * i.alpha_2`.
-        pub reference_force_alpha_2: R,
-        /// `i.reference_force * x.alpha`.
-        pub reference_force_alpha: R,
-        /// `i.reference_force * u.delta_e`.
-        pub reference_force_delta_e: R,
-        /// `i.reference_force * i.canard_deflection`.
-        pub reference_force_canard_deflection: R,
+        slope_of_radius_ratio_in_earth_curvature,
+        two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity, reference_force_alpha_2, reference_force_alpha,
+        reference_force_delta_e, reference_force_canard_deflection,
     }
 }
 
 /// Computes [`Sensitivities`].
 #[inline(always)]
-pub fn sensitivities<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Sensitivities<R> {
+pub fn sensitivities<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
     // Derivatives with respect to parameters

@@ -16,11 +16,7 @@ pub const TABLE: Table = Table {
         Entry::parameter("vehicle", "S", "reference area"),
         Entry::parameter("vehicle", "c_bar", "mean aerodynamic chord"),
         Entry::parameter("vehicle", "z_T", "thrust-to-moment coupling arm"),
-        Entry::parameter(
-            "environment",
-            "rho_0",
-            "air density at the reference altitude",
-        ),
+        Entry::parameter("environment", "rho_0", "air density at the reference altitude"),
         Entry::parameter("environment", "h_0", "reference altitude of the air density"),
         Entry::parameter("environment", "h_s", "scale height of the air density"),
         Entry::parameter("environment", "g", "acceleration of gravity at sea level"),
@@ -37,34 +33,14 @@ pub const TABLE: Table = Table {
         Entry::parameter("noise", "w_gamma", "intensity of the white noise w_gamma"),
         Entry::parameter("noise", "w_alpha", "intensity of the white noise w_alpha"),
         Entry::parameter("noise", "w_q", "intensity of the white noise w_Q"),
-        Entry::parameter("noise", "gust_rms", "root mean square of the gust incidence")
-            .only_for(&["sdcom_gust"]),
-        Entry::parameter("noise", "gust_time", "correlation time of the gust incidence")
-            .only_for(&["sdcom_gust"]),
-        Entry::switch(
-            "canard",
-            "share of the commanded canard deflection: 1 canard free, else 0",
-        ),
-        Entry::switch(
-            "canard",
-            "share of law (4) in the canard deflection: 1 canard slaved, else 0",
-        ),
-        Entry::switch(
-            "earth",
-            "share of the Earth's curvature in the motion: 1 spherical, 0 flat",
-        ),
-        Entry::switch(
-            "noise",
-            "correlation of the noise of modes 2, 3, ... with that of mode 1",
-        ),
-        Entry::switch(
-            "reduction",
-            "share of the reduction that matches decay rate and variance",
-        ),
-        Entry::switch(
-            "reduction",
-            "share of the reduction that matches variance and gain at zero frequency",
-        ),
+        Entry::parameter("noise", "gust_rms", "root mean square of the gust incidence").only_for(&["sdcom_gust"]),
+        Entry::parameter("noise", "gust_time", "correlation time of the gust incidence").only_for(&["sdcom_gust"]),
+        Entry::switch("canard", "share of the commanded canard deflection: 1 canard free, else 0"),
+        Entry::switch("canard", "share of law (4) in the canard deflection: 1 canard slaved, else 0"),
+        Entry::switch("earth", "share of the Earth's curvature in the motion: 1 spherical, 0 flat"),
+        Entry::switch("noise", "correlation of the noise of modes 2, 3, ... with that of mode 1"),
+        Entry::switch("reduction", "share of the reduction that matches decay rate and variance"),
+        Entry::switch("reduction", "share of the reduction that matches variance and gain at zero frequency"),
         Entry::coefficient("C_T", "phi*alpha^3", "coefficient of phi*alpha^3 in C_T"),
         Entry::coefficient("C_T", "phi*alpha^2", "coefficient of phi*alpha^2 in C_T"),
         Entry::coefficient("C_T", "phi*alpha", "coefficient of phi*alpha in C_T"),
@@ -132,11 +108,7 @@ pub const TABLE: Table = Table {
                     "the canard follows the elevator by law (4)",
                     &[("canard_command", 0.0), ("canard_slaving", 1.0)],
                 ),
-                ChoiceOption::new(
-                    "none",
-                    "there is no canard",
-                    &[("canard_command", 0.0), ("canard_slaving", 0.0)],
-                ),
+                ChoiceOption::new("none", "there is no canard", &[("canard_command", 0.0), ("canard_slaving", 0.0)]),
             ],
         ),
         Choice::new(
@@ -159,11 +131,7 @@ pub const TABLE: Table = Table {
             "noise",
             "noise of the flexible modes",
             &[
-                ChoiceOption::new(
-                    "independent",
-                    "every mode has a white noise of its own",
-                    &[("shared_noise", 0.0)],
-                ),
+                ChoiceOption::new("independent", "every mode has a white noise of its own", &[("shared_noise", 0.0)]),
                 ChoiceOption::new(
                     "shared",
                     "one white noise drives all modes, as (16) has it",
@@ -200,49 +168,23 @@ pub const TABLE: Table = Table {
         Interval::new("gamma", "rad", VALIDITY.gamma, &["gamma"]),
         Interval::new("alpha", "rad", VALIDITY.alpha, &["alpha"]),
         Interval::new("pitch_rate", "rad/s", VALIDITY.pitch_rate, &["pitch_rate"]),
-        Interval::new(
-            "eta",
-            "(ft*slug)^0.5",
-            VALIDITY.eta,
-            &["eta_1", "eta_2", "eta_3"],
-        ),
-        Interval::new(
-            "eta_dot",
-            "(ft*slug)^0.5/s",
-            VALIDITY.eta_dot,
-            &["eta_dot_1", "eta_dot_2", "eta_dot_3"],
-        ),
-        Interval::new(
-            "chi",
-            "(ft*slug)^0.5",
-            VALIDITY.chi,
-            &["chi_1", "chi_2", "chi_3"],
-        ),
-        Interval::new("alpha_gust", "rad", VALIDITY.alpha_gust, &["alpha_gust"])
-            .only_for(&["sdcom_gust"]),
+        Interval::new("eta", "(ft*slug)^0.5", VALIDITY.eta, &["eta_1", "eta_2", "eta_3"]),
+        Interval::new("eta_dot", "(ft*slug)^0.5/s", VALIDITY.eta_dot, &["eta_dot_1", "eta_dot_2", "eta_dot_3"]),
+        Interval::new("chi", "(ft*slug)^0.5", VALIDITY.chi, &["chi_1", "chi_2", "chi_3"]),
+        Interval::new("alpha_gust", "rad", VALIDITY.alpha_gust, &["alpha_gust"]).only_for(&["sdcom_gust"]),
         Interval::new("phi", "1", VALIDITY.phi, &["phi"]),
         Interval::new("delta_e", "rad", VALIDITY.delta_e, &["delta_e"]),
         Interval::new("delta_c", "rad", VALIDITY.delta_c, &["delta_c"]),
     ],
     rules: &[
-        Rule::new(
-            "positive",
-            "`m` (vehicle mass) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["m"])],
-        ),
+        Rule::new("positive", "`m` (vehicle mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),
         Rule::new(
             "positive",
             "`I_yy` (pitch moment of inertia) must be positive",
             Sign::Positive,
             &[Term::new(1.0, &["i_yy"])],
         ),
-        Rule::new(
-            "positive",
-            "`S` (reference area) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["s"])],
-        ),
+        Rule::new("positive", "`S` (reference area) must be positive", Sign::Positive, &[Term::new(1.0, &["s"])]),
         Rule::new(
             "positive",
             "`c_bar` (mean aerodynamic chord) must be positive",

@@ -40,25 +40,13 @@ impl<R: Real> Parameters<R> {
     pub fn with_reduction(self, choice: Reduction) -> Self {
         match choice {
             Reduction::Printed => {
-                Self {
-                    moment_matching: R::ZERO,
-                    variance_matching: R::ZERO,
-                    ..self
-                }
+                Self { moment_matching: R::ZERO, variance_matching: R::ZERO, ..self }
             }
             Reduction::Variance => {
-                Self {
-                    moment_matching: R::ZERO,
-                    variance_matching: R::ONE,
-                    ..self
-                }
+                Self { moment_matching: R::ZERO, variance_matching: R::ONE, ..self }
             }
             Reduction::Moment => {
-                Self {
-                    moment_matching: R::ONE,
-                    variance_matching: R::ZERO,
-                    ..self
-                }
+                Self { moment_matching: R::ONE, variance_matching: R::ZERO, ..self }
             }
         }
     }

@@ -3,10 +3,7 @@
 //! What FLEXIBLE_MODE says of itself.
 
 use super::*;
-use ahv_core::{
-    Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table,
-    TrimProblem,
-};
+use ahv_core::{Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table, TrimProblem};
 
 impl GeneratedModel for Model<f64> {
     const NAME: &'static str = "flexible_mode";
@@ -56,20 +53,13 @@ impl GeneratedModel for Model<f64> {
     }
 
     #[inline(always)]
-    fn map_model<R: Real, U: Real>(
-        model: &Model<R>,
-        f: impl FnMut(&R) -> U,
-    ) -> Model<U> {
+    fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {
         model.map_ref(f)
     }
     fn coloured<V: ahv_core::CountVisitor>(visitor: V) -> Option<V::Output> {
         Some(visitor.visit::<1>())
     }
-    fn parameter_jacobian(
-        &self,
-        x: &State<f64>,
-        u: &Input<f64>,
-    ) -> ParameterJacobian<f64> {
+    fn parameter_jacobian(&self, x: &State<f64>, u: &Input<f64>) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)
     }
     fn outputs<R: Real>(model: &Model<R>, x: &State<R>, u: &Input<R>) -> Outputs<R> {

@@ -7,9 +7,9 @@ use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Diffusion`].
-    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
-        eta_dot_by_xi: eta_dot.xi,
-        chi_by_xi: chi.xi,
+    pub struct DiffusionEntries in diffusion_entries, DIFFUSION_PATTERN: State<Noise> {
+        eta_dot { xi }
+        chi { xi }
     }
 }
 
@@ -20,15 +20,11 @@ ahv_core::entries! {
 ///
 /// No operations.
 #[inline(always)]
-pub fn diffusion_values<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> DiffusionEntries<R> {
-    DiffusionEntries {
-        eta_dot_by_xi: p.sigma,
-        chi_by_xi: p.chi_diffusion,
-    }
+pub fn diffusion_values<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
+    let mut diffusion = DiffusionEntries::splat(R::ZERO);
+    diffusion.eta_dot.xi = p.sigma;
+    diffusion.chi.xi = p.chi_diffusion;
+    diffusion
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; mode (17) and coloured noise
@@ -42,11 +38,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 ///
 /// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
-pub fn drift_and_diffusion<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (State<R>, Diffusion<R>) {
+pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let drift = drift(x, u, p);
     let diffusion = diffusion_values(x, u, p);
     (drift, diffusion.dense())
@@ -56,12 +48,7 @@ pub fn drift_and_diffusion<R: Real>(
 ///
 /// 2 operations: 2 multiplications.
 #[inline(always)]
-pub fn noise_increment<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-) -> State<R> {
+pub fn noise_increment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     State {
         eta: R::ZERO,
         eta_dot: p.sigma * dw.xi,
@@ -75,10 +62,7 @@ pub fn noise_increment<R: Real>(
 /// 7 operations: 2 additions, 5 multiplications.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
     let drift = drift(x, u, p);
     let increment = noise_increment(x, u, p, dw);

@@ -11,9 +11,7 @@ use ahv_core::Real;
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Response of the mode, (5)
-    let eta_acceleration = u.force
-        - p.damping * x.eta_dot
-        - p.stiffness * x.eta; // (ft*slug)^0.5/s^2
+    let eta_acceleration = u.force - p.damping * x.eta_dot - p.stiffness * x.eta; // (ft*slug)^0.5/s^2
 
     // Coloured noise, (27)
     let chi_rate = -p.chi_decay * x.chi; // (ft*slug)^0.5/s

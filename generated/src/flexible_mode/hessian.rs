@@ -7,8 +7,7 @@ use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Hessian`].
-    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
-        
+    pub struct HessianEntries in hessian_entries, HESSIAN_PATTERN: symmetric State<State<State>> {
     }
 }
 
@@ -18,12 +17,9 @@ ahv_core::entries! {
 ///
 /// No operations.
 #[inline(always)]
-pub fn hessian_values<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    _p: &Prepared<R>,
-) -> HessianEntries<R> {
-    HessianEntries::splat(R::ZERO)
+pub fn hessian_values<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> HessianEntries<R> {
+    let hessian = HessianEntries::splat(R::ZERO);
+    hessian
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).

@@ -7,18 +7,17 @@ use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`StateJacobian`].
-    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
-        eta_by_eta_dot: eta.eta_dot,
-        eta_dot_by_eta: eta_dot.eta,
-        eta_dot_by_eta_dot: eta_dot.eta_dot,
-        chi_by_chi: chi.chi,
+    pub struct StateJacobianEntries in state_jacobian_entries, STATE_JACOBIAN_PATTERN: State<State> {
+        eta { eta_dot }
+        eta_dot { eta, eta_dot }
+        chi { chi }
     }
 }
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`InputJacobian`].
-    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
-        eta_dot_by_force: eta_dot.force,
+    pub struct InputJacobianEntries in input_jacobian_entries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        eta_dot { force }
     }
 }
 
@@ -29,30 +28,21 @@ ahv_core::entries! {
 /// No operations.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
-    // Result
-    let state = StateJacobianEntries {
-        eta_by_eta_dot: R::ONE,
-        eta_dot_by_eta: p.minus_stiffness,
-        eta_dot_by_eta_dot: p.minus_damping,
-        chi_by_chi: p.minus_chi_decay,
-    };
-    let input = InputJacobianEntries {
-        eta_dot_by_force: R::ONE,
-    };
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+    state.eta.eta_dot = R::ONE;
+    state.eta_dot.eta = p.minus_stiffness;
+    state.eta_dot.eta_dot = p.minus_damping;
+    state.chi.chi = p.minus_chi_decay;
+    input.eta_dot.force = R::ONE;
     (state, input)
 }
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (5).
 #[inline(always)]
-pub fn jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (StateJacobian<R>, InputJacobian<R>) {
+pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
     (state.dense(), input.dense())
 }
@@ -65,9 +55,7 @@ pub fn jacobians<R: Real>(
 /// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let drift = drift(x, u, p);
     let (state, input) = jacobians_values(x, u, p);
@@ -78,9 +66,7 @@ pub fn drift_and_jacobians_values<R: Real>(
 /// for less than one after the other, eq. (5).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
     (drift, state.dense(), input.dense())

@@ -37,31 +37,17 @@ pub use prepared::{Prepared, prepare};
 
 use ahv_core::{Bounds, NoiseClass, Pattern, Real, Vector};
 
-/// State of FLEXIBLE_MODE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct State<T> {
-    /// Flexible generalized coordinate, (ft*slug)^0.5.
-    pub eta: T,
-    /// Rate of the flexible generalized coordinate, (ft*slug)^0.5/s.
-    pub eta_dot: T,
-    /// Coloured noise in the place of the coordinate, (ft*slug)^0.5.
-    pub chi: T,
-}
-
-ahv_core::impl_vector! {
-    State {
+ahv_core::vector! {
+    /// State of FLEXIBLE_MODE.
+    pub struct State<T> {
+        /// Flexible generalized coordinate, (ft*slug)^0.5.
         eta: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
+        /// Rate of the flexible generalized coordinate, (ft*slug)^0.5/s.
         eta_dot: ["(ft*slug)^0.5/s", "(m*kg)^0.5/s", 2.1090807512422325],
+        /// Coloured noise in the place of the coordinate, (ft*slug)^0.5.
         chi: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
     }
 }
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, State);
 
 /// Where the curve fits are meant to be used.
 pub const STATE_BOUNDS: State<Bounds> = State {
@@ -70,68 +56,35 @@ pub const STATE_BOUNDS: State<Bounds> = State {
     chi: VALIDITY.chi,
 };
 
-/// Input of FLEXIBLE_MODE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Input<T> {
-    /// Generalized force, (ft*slug)^0.5/s^2.
-    pub force: T,
-}
-
-ahv_core::impl_vector! {
-    Input {
+ahv_core::vector! {
+    /// Input of FLEXIBLE_MODE.
+    pub struct Input<T> {
+        /// Generalized force, (ft*slug)^0.5/s^2.
         force: ["(ft*slug)^0.5/s^2", "(m*kg)^0.5/s^2", 2.1090807512422325],
     }
 }
 
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Input);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Input);
-
 /// Where the curve fits are meant to be used.
 pub const INPUT_BOUNDS: Input<Bounds> = Input { force: VALIDITY.force };
 
-/// One value for each independent Wiener process of FLEXIBLE_MODE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Noise<T> {
-    /// Wiener increment that drives mode and coloured noise, s^0.5.
-    pub xi: T,
-}
-
-ahv_core::impl_vector! {
-    Noise {
+ahv_core::vector! {
+    /// One value for each independent Wiener process of FLEXIBLE_MODE.
+    pub struct Noise<T> {
+        /// Wiener increment that drives mode and coloured noise, s^0.5.
         xi: ["s^0.5", "s^0.5", 1.0],
     }
 }
 
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Noise);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Noise);
-
-/// Quantities that people look at of FLEXIBLE_MODE.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Outputs<T> {
-    /// Static coordinate, (ft*slug)^0.5.
-    pub eta_static: T,
-}
-
-ahv_core::impl_vector! {
-    Outputs {
+ahv_core::vector! {
+    /// Quantities that people look at of FLEXIBLE_MODE.
+    pub struct Outputs<T> {
+        /// Static coordinate, (ft*slug)^0.5.
         eta_static: ["(ft*slug)^0.5", "(m*kg)^0.5", 2.1090807512422325],
     }
 }
 
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(Outputs);
-
-#[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra_matrix!(State, Outputs);
+ahv_core::impl_nalgebra!(State by State, Input, Noise, Outputs);
 
 /// ∂f/∂x: `jacobian.eta.eta_dot` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
@@ -167,9 +120,7 @@ pub struct Model<R> {
 impl<R: Real> Model<R> {
     /// The model for these parameters.
     pub fn new(parameters: &Parameters<R>) -> Self {
-        Self {
-            prepared: prepare(parameters),
-        }
+        Self { prepared: prepare(parameters) }
     }
 }
 
@@ -200,20 +151,12 @@ impl<R: Real> ahv_core::DifferentiableModel for Model<R> {
     const STATE_JACOBIAN_PATTERN: Pattern<2> = STATE_JACOBIAN_PATTERN;
 
     #[inline(always)]
-    fn jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (StateJacobian<R>, InputJacobian<R>) {
+    fn jacobians(&self, x: &State<R>, u: &Input<R>) -> (StateJacobian<R>, InputJacobian<R>) {
         jacobians(x, u, &self.prepared)
     }
 
     #[inline(always)]
-    fn drift_and_jacobians(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-    ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
+    fn drift_and_jacobians(&self, x: &State<R>, u: &Input<R>) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
         drift_and_jacobians(x, u, &self.prepared)
     }
 }
@@ -227,12 +170,7 @@ impl<R: Real> ahv_core::StochasticModel for Model<R> {
     }
 
     #[inline(always)]
-    fn drift_and_noise_increment(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-        dw: &Noise<R>,
-    ) -> (State<R>, State<R>) {
+    fn drift_and_noise_increment(&self, x: &State<R>, u: &Input<R>, dw: &Noise<R>) -> (State<R>, State<R>) {
         drift_and_noise_increment(x, u, &self.prepared, dw)
     }
 
@@ -256,17 +194,11 @@ impl<R: Real> ahv_core::ItoCorrected for Model<R> {
 
 impl<R: Real> ahv_core::DifferentiableNoise for Model<R> {
     #[inline(always)]
-    fn iterated_increment(
-        &self,
-        x: &State<R>,
-        u: &Input<R>,
-        mut integral: impl FnMut(usize, usize) -> R,
-    ) -> State<R> {
+    fn iterated_increment(&self, x: &State<R>, u: &Input<R>, mut integral: impl FnMut(usize, usize) -> R) -> State<R> {
         let values = noise_derivatives_values(x, u, &self.prepared);
         let mut sum = State::splat(R::ZERO).to_array();
         for (value, &[row, j, k]) in values
-            .to_array()
-            .into_iter()
+            .to_array().into_iter()
             .zip(NOISE_DERIVATIVES_PATTERN.at)
         {
             if let Some(component) = sum.get_mut(row) {

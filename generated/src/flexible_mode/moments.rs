@@ -9,11 +9,7 @@ use ahv_core::Real;
 ///
 /// No operations.
 #[inline(always)]
-pub fn reduction_printed<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> (R, R) {
+pub fn reduction_printed<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> (R, R) {
     // Result
     let decay = p.zeta_omega;
     let diffusion = p.zeta_sigma_over_omega;
@@ -25,11 +21,7 @@ pub fn reduction_printed<R: Real>(
 ///
 /// No operations.
 #[inline(always)]
-pub fn chi_variance_printed<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> R {
+pub fn chi_variance_printed<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.half_zeta_sigma_2_over_omega_stiffness
 }
 
@@ -37,11 +29,7 @@ pub fn chi_variance_printed<R: Real>(
 ///
 /// No operations.
 #[inline(always)]
-pub fn reduction_variance<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> (R, R) {
+pub fn reduction_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> (R, R) {
     // Result
     let decay = p.zeta_omega;
     let diffusion = p.root_half_sigma_over_omega;
@@ -52,11 +40,7 @@ pub fn reduction_variance<R: Real>(
 ///
 /// No operations.
 #[inline(always)]
-pub fn chi_variance_variance<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> R {
+pub fn chi_variance_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
@@ -64,11 +48,7 @@ pub fn chi_variance_variance<R: Real>(
 ///
 /// No operations.
 #[inline(always)]
-pub fn reduction_moment<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> (R, R) {
+pub fn reduction_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> (R, R) {
     // Result
     let decay = p.half_omega_over_zeta;
     let diffusion = p.sigma_over_damping;
@@ -112,12 +92,7 @@ pub fn chi_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
-pub fn chi_variance_at<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn chi_variance_at<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     let exp_minus_two_chi_decay_time = (p.minus_two_chi_decay * time).exp();
 
     p.half_chi_diffusion_2_over_chi_decay * (R::ONE - exp_minus_two_chi_decay_time)
@@ -127,12 +102,7 @@ pub fn chi_variance_at<R: Real>(
 ///
 /// 3 operations: 2 multiplications, 1 exp.
 #[inline(always)]
-pub fn chi_autocorrelation<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn chi_autocorrelation<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     let exp_minus_chi_decay_time = (-p.chi_decay * time).exp();
 
     p.half_chi_diffusion_2_over_chi_decay * exp_minus_chi_decay_time
@@ -143,12 +113,7 @@ pub fn chi_autocorrelation<R: Real>(
 ///
 /// 10 operations: 3 additions, 6 multiplications, 1 division.
 #[inline(always)]
-pub fn eta_spectrum<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    frequency: R,
-) -> R {
+pub fn eta_spectrum<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, frequency: R) -> R {
     let omega_minus_frequency = p.omega - frequency;
     let power_2_of_omega_minus_frequency = omega_minus_frequency * omega_minus_frequency;
     let omega_plus_frequency = p.omega + frequency;
@@ -165,12 +130,7 @@ pub fn eta_spectrum<R: Real>(
 ///
 /// 4 operations: 1 addition, 2 multiplications, 1 division.
 #[inline(always)]
-pub fn chi_spectrum<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    frequency: R,
-) -> R {
+pub fn chi_spectrum<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, frequency: R) -> R {
     let frequency_2 = frequency * frequency;
     let inv_of_chi_decay_2_plus_frequency_2 = (p.chi_decay_2 + frequency_2).recip();
 
@@ -181,12 +141,7 @@ pub fn chi_spectrum<R: Real>(
 ///
 /// 15 operations: 3 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn eta_variance_at_underdamped<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn eta_variance_at_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
@@ -206,12 +161,7 @@ pub fn eta_variance_at_underdamped<R: Real>(
 ///
 /// 9 operations: 1 addition, 6 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn eta_autocorrelation_underdamped<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn eta_autocorrelation_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
@@ -226,12 +176,7 @@ pub fn eta_autocorrelation_underdamped<R: Real>(
 ///
 /// 11 operations: 3 additions, 7 multiplications, 1 exp.
 #[inline(always)]
-pub fn eta_variance_at_critical<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn eta_variance_at_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (13)
     let scaled_time = p.omega * time;
     let critical_envelope = (-scaled_time).exp();
@@ -249,12 +194,7 @@ pub fn eta_variance_at_critical<R: Real>(
 ///
 /// 5 operations: 1 addition, 3 multiplications, 1 exp.
 #[inline(always)]
-pub fn eta_autocorrelation_critical<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn eta_autocorrelation_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (13)
     let scaled_time = p.omega * time;
     let critical_envelope = (-scaled_time).exp();
@@ -266,12 +206,7 @@ pub fn eta_autocorrelation_critical<R: Real>(
 ///
 /// 15 operations: 5 additions, 8 multiplications, 2 exp.
 #[inline(always)]
-pub fn eta_variance_at_overdamped<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn eta_variance_at_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
     let fast_envelope = (-p.fast_pole * time).exp();
     let slow_envelope = (-p.slow_pole * time).exp();
@@ -291,12 +226,7 @@ pub fn eta_variance_at_overdamped<R: Real>(
 ///
 /// 8 operations: 1 addition, 5 multiplications, 2 exp.
 #[inline(always)]
-pub fn eta_autocorrelation_overdamped<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> R {
+pub fn eta_autocorrelation_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
     let fast_envelope = (-p.fast_pole * time).exp();
     let slow_envelope = (-p.slow_pole * time).exp();

@@ -7,12 +7,9 @@ use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        eta_dot_by_omega: eta_dot.omega,
-        eta_dot_by_zeta: eta_dot.zeta,
-        chi_by_omega: chi.omega,
-        chi_by_zeta: chi.zeta,
-        chi_by_moment_matching: chi.moment_matching,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        eta_dot { omega, zeta }
+        chi { omega, zeta, moment_matching }
     }
 }
 
@@ -22,32 +19,21 @@ ahv_core::entries! {
 ///
 /// 7 operations: 1 addition, 6 multiplications.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
-    // Derivatives with respect to parameters
-    let d_eta_acceleration_d_omega = -(x.eta_dot * p.two_zeta + x.eta * p.two_omega); // ft^0.5*slug^0.5/s/rad
-    let d_chi_rate_d_omega = -x.chi * p.d_chi_decay_d_omega; // ft^0.5*slug^0.5/rad
-    let d_chi_rate_d_zeta = -x.chi * p.d_chi_decay_d_zeta; // (ft*slug)^0.5/s
-    let d_chi_rate_d_moment_matching = -x.chi * p.d_chi_decay_d_moment_matching; // (ft*slug)^0.5/s
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
+    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
 
-    ParameterJacobianEntries {
-        eta_dot_by_omega: d_eta_acceleration_d_omega,
-        eta_dot_by_zeta: x.eta_dot * p.minus_two_omega,
-        chi_by_omega: d_chi_rate_d_omega,
-        chi_by_zeta: d_chi_rate_d_zeta,
-        chi_by_moment_matching: d_chi_rate_d_moment_matching,
-    }
+    // Derivatives with respect to parameters
+    parameter.eta_dot.omega = -(x.eta_dot * p.two_zeta + x.eta * p.two_omega); // ft^0.5*slug^0.5/s/rad
+    parameter.chi.omega = -x.chi * p.d_chi_decay_d_omega; // ft^0.5*slug^0.5/rad
+    parameter.chi.zeta = -x.chi * p.d_chi_decay_d_zeta; // (ft*slug)^0.5/s
+    parameter.chi.moment_matching = -x.chi * p.d_chi_decay_d_moment_matching; // (ft*slug)^0.5/s
+
+    parameter.eta_dot.zeta = x.eta_dot * p.minus_two_omega;
+    parameter
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (5).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

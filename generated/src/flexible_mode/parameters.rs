@@ -4,28 +4,18 @@
 
 use ahv_core::Bounds;
 
-/// One value for each parameter and coefficient of the table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Parameters<T> {
-    /// Natural frequency, rad/s.
-    pub omega: T,
-    /// Damping ratio, dimensionless.
-    pub zeta: T,
-    /// Intensity of the white noise, (ft*slug)^0.5/s^1.5.
-    pub sigma: T,
-    /// Share of the reduction that matches decay rate and variance, dimensionless.
-    pub variance_matching: T,
-    /// Share of the reduction that matches variance and gain at zero frequency, dimensionless.
-    pub moment_matching: T,
-}
-
-ahv_core::impl_vector! {
-    Parameters {
+ahv_core::vector! {
+    /// One value for each parameter and coefficient of the table.
+    pub struct Parameters<T> {
+        /// Natural frequency, rad/s.
         omega: ["rad/s", "rad/s", 1.0],
+        /// Damping ratio, dimensionless.
         zeta: ["1", "1", 1.0],
+        /// Intensity of the white noise, (ft*slug)^0.5/s^1.5.
         sigma: ["(ft*slug)^0.5/s^1.5", "(m*kg)^0.5/s^1.5", 2.1090807512422325],
+        /// Share of the reduction that matches decay rate and variance, dimensionless.
         variance_matching: ["1", "1", 1.0],
+        /// Share of the reduction that matches variance and gain at zero frequency, dimensionless.
         moment_matching: ["1", "1", 1.0],
     }
 }

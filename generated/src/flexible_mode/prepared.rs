@@ -6,94 +6,33 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
         /// Damping of the mode, rad/s.
-        pub damping: R,
+        damping,
         /// Stiffness of the mode, rad^2/s^2.
-        pub stiffness: R,
+        stiffness,
         /// Decay rate of the coloured noise, 1/s.
-        pub chi_decay: R,
-        /// `-stiffness`.
-        pub minus_stiffness: R,
-        /// `-damping`.
-        pub minus_damping: R,
-        /// `-chi_decay`.
-        pub minus_chi_decay: R,
-        /// `2 * zeta`.
-        pub two_zeta: R,
-        /// `2 * omega`.
-        pub two_omega: R,
-        /// `R::from_f64(-2.0) * omega`.
-        pub minus_two_omega: R,
-        /// Derivative of decay rate of the coloured noise with respect to omega, 1/rad.
-        pub d_chi_decay_d_omega: R,
-        /// Derivative of decay rate of the coloured noise with respect to zeta, 1/s.
-        pub d_chi_decay_d_zeta: R,
-        /// Derivative of decay rate of the coloured noise with respect to moment_matching, 1/s.
-        pub d_chi_decay_d_moment_matching: R,
-        /// Intensity of the white noise, (ft*slug)^0.5/s^1.5.
-        pub sigma: R,
+        chi_decay,
         /// Diffusion of the coloured noise, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion: R,
-        /// `zeta * omega`.
-        pub zeta_omega: R,
-        /// `zeta * sigma * inv_omega`.
-        pub zeta_sigma_over_omega: R,
-        /// `R::HALF * zeta * sigma_2 * inv_omega * inv_stiffness`.
-        pub half_zeta_sigma_2_over_omega_stiffness: R,
-        /// `R::from_f64(0.7071067811865475) * sigma * inv_omega`.
-        pub root_half_sigma_over_omega: R,
-        /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness`.
-        pub quarter_sigma_2_over_zeta_omega_stiffness: R,
-        /// `R::HALF * omega * inv_zeta`.
-        pub half_omega_over_zeta: R,
-        /// `sigma * inv_damping`.
-        pub sigma_over_damping: R,
-        /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega`.
-        pub quarter_sigma_2_over_zeta_omega: R,
-        /// `R::HALF * chi_diffusion_2 * inv_chi_decay`.
-        pub half_chi_diffusion_2_over_chi_decay: R,
-        /// `R::from_f64(-2.0) * chi_decay`.
-        pub minus_two_chi_decay: R,
-        /// `sigma * sigma`.
-        pub sigma_2: R,
-        /// Natural frequency, rad/s.
-        pub omega: R,
-        /// `damping * damping`.
-        pub damping_2: R,
-        /// `chi_diffusion * chi_diffusion`.
-        pub chi_diffusion_2: R,
-        /// `chi_decay * chi_decay`.
-        pub chi_decay_2: R,
-        /// `omega * damped_ratio`.
-        pub omega_damped_ratio: R,
-        /// Damping ratio, dimensionless.
-        pub zeta: R,
-        /// `1 / damped_ratio`.
-        pub inv_damped_ratio: R,
-        /// `1 / omega`.
-        pub inv_omega: R,
-        /// `1 / stiffness`.
-        pub inv_stiffness: R,
-        /// `2 * zeta_2`.
-        pub two_zeta_2: R,
-        /// `R::from_f64(0.25) * sigma_2 * inv_omega * inv_stiffness`.
-        pub quarter_sigma_2_over_omega_stiffness: R,
+        chi_diffusion,
         /// Faster decay rate of the mode, 1/s.
-        pub fast_pole: R,
+        fast_pole,
         /// Slower decay rate of the mode, 1/s.
-        pub slow_pole: R,
-        /// `pole_garecip()`.
-        pub inv_pole_gap: R,
-        /// `stiffness * inv_pole_gap`.
-        pub stiffness_over_pole_gap: R,
-        /// `2 * zeta_2 * stiffness * inv_pole_gap_2`.
-        pub two_zeta_2_stiffness_inv_pole_gap_2: R,
-        /// `zeta * omega * inv_pole_gap`.
-        pub zeta_omega_over_pole_gap: R,
-        /// `R::from_f64(0.25) * sigma_2 * inv_zeta * inv_omega * inv_stiffness * inv_pole_gap`.
-        pub quarter_sigma_2_over_zeta_omega_stiffness_pole_gap: R,
+        slow_pole,
+        minus_stiffness, minus_damping, minus_chi_decay, two_zeta, two_omega, minus_two_omega, d_chi_decay_d_omega,
+        d_chi_decay_d_zeta, d_chi_decay_d_moment_matching, zeta_omega, zeta_sigma_over_omega,
+        half_zeta_sigma_2_over_omega_stiffness, root_half_sigma_over_omega, quarter_sigma_2_over_zeta_omega_stiffness,
+        half_omega_over_zeta, sigma_over_damping, quarter_sigma_2_over_zeta_omega, half_chi_diffusion_2_over_chi_decay,
+        minus_two_chi_decay, sigma_2, damping_2, chi_diffusion_2, chi_decay_2, omega_damped_ratio, inv_damped_ratio,
+        inv_omega, inv_stiffness, two_zeta_2, quarter_sigma_2_over_omega_stiffness, inv_pole_gap,
+        stiffness_over_pole_gap, two_zeta_2_stiffness_inv_pole_gap_2, zeta_omega_over_pole_gap,
+        quarter_sigma_2_over_zeta_omega_stiffness_pole_gap,
+    }
+    from Parameters {
+        sigma,
+        omega, zeta,
     }
 }
 
@@ -101,10 +40,7 @@ ahv_core::record! {
 ///
 /// 94 operations: 13 additions, 71 multiplications, 8 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
-    c.sigma = p.sigma;
-    c.omega = p.omega;
-    c.zeta = p.zeta;
+    let mut c = Prepared::copied(p);
 
     // Response of the mode, (5)
     c.damping = R::TWO * p.zeta * p.omega; // rad/s
@@ -149,17 +85,14 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.zeta_sigma_over_omega = p.zeta * p.sigma * c.inv_omega;
     c.sigma_2 = p.sigma * p.sigma;
     c.inv_stiffness = c.stiffness.recip();
-    c.half_zeta_sigma_2_over_omega_stiffness = R::HALF * p.zeta * c.sigma_2 * c.inv_omega
+    c.half_zeta_sigma_2_over_omega_stiffness = R::HALF * p.zeta * c.sigma_2 * c.inv_omega * c.inv_stiffness;
+    c.root_half_sigma_over_omega = R::from_f64(0.7071067811865475) * p.sigma * c.inv_omega;
+    c.quarter_sigma_2_over_zeta_omega_stiffness = R::from_f64(0.25) * c.sigma_2 * inv_zeta * c.inv_omega
         * c.inv_stiffness;
-    c.root_half_sigma_over_omega = R::from_f64(0.7071067811865475) * p.sigma
-        * c.inv_omega;
-    c.quarter_sigma_2_over_zeta_omega_stiffness = R::from_f64(0.25) * c.sigma_2
-        * inv_zeta * c.inv_omega * c.inv_stiffness;
     c.half_omega_over_zeta = R::HALF * p.omega * inv_zeta;
     let inv_damping = c.damping.recip();
     c.sigma_over_damping = p.sigma * inv_damping;
-    c.quarter_sigma_2_over_zeta_omega = R::from_f64(0.25) * c.sigma_2 * inv_zeta
-        * c.inv_omega;
+    c.quarter_sigma_2_over_zeta_omega = R::from_f64(0.25) * c.sigma_2 * inv_zeta * c.inv_omega;
     c.chi_diffusion_2 = c.chi_diffusion * c.chi_diffusion;
     let inv_chi_decay = c.chi_decay.recip();
     c.half_chi_diffusion_2_over_chi_decay = R::HALF * c.chi_diffusion_2 * inv_chi_decay;
@@ -170,15 +103,13 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.inv_damped_ratio = damped_ratio.recip();
     let zeta_2 = p.zeta * p.zeta;
     c.two_zeta_2 = R::TWO * zeta_2;
-    c.quarter_sigma_2_over_omega_stiffness = R::from_f64(0.25) * c.sigma_2 * c.inv_omega
-        * c.inv_stiffness;
+    c.quarter_sigma_2_over_omega_stiffness = R::from_f64(0.25) * c.sigma_2 * c.inv_omega * c.inv_stiffness;
     c.inv_pole_gap = pole_gap.recip();
     c.stiffness_over_pole_gap = c.stiffness * c.inv_pole_gap;
     let inv_pole_gap_2 = c.inv_pole_gap * c.inv_pole_gap;
-    c.two_zeta_2_stiffness_inv_pole_gap_2 = R::TWO * zeta_2 * c.stiffness
-        * inv_pole_gap_2;
+    c.two_zeta_2_stiffness_inv_pole_gap_2 = R::TWO * zeta_2 * c.stiffness * inv_pole_gap_2;
     c.zeta_omega_over_pole_gap = p.zeta * p.omega * c.inv_pole_gap;
-    c.quarter_sigma_2_over_zeta_omega_stiffness_pole_gap = R::from_f64(0.25) * c.sigma_2
-        * inv_zeta * c.inv_omega * c.inv_stiffness * c.inv_pole_gap;
+    c.quarter_sigma_2_over_zeta_omega_stiffness_pole_gap = R::from_f64(0.25) * c.sigma_2 * inv_zeta * c.inv_omega
+        * c.inv_stiffness * c.inv_pole_gap;
     c
 }

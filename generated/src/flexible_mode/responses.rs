@@ -9,12 +9,7 @@ use ahv_core::{Real, Vector};
 ///
 /// 16 operations: 2 additions, 11 multiplications, 1 sin_cos, 2 exp.
 #[inline(always)]
-pub fn transition_underdamped<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> StateJacobian<R> {
+pub fn transition_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> StateJacobian<R> {
     // Response of the mode, (14)
     let envelope = (-p.zeta_omega * time).exp();
     let phase = p.omega_damped_ratio * time;
@@ -36,10 +31,7 @@ pub fn transition_underdamped<R: Real>(
             eta_dot: envelope * (cos_phase - zeta_sin_phase),
             ..no_state
         },
-        chi: State {
-            chi: exp_minus_chi_decay_time,
-            ..no_state
-        },
+        chi: State { chi: exp_minus_chi_decay_time, ..no_state },
     }
 }
 
@@ -47,12 +39,7 @@ pub fn transition_underdamped<R: Real>(
 ///
 /// 24 operations: 6 additions, 15 multiplications, 1 sin_cos, 2 exp.
 #[inline(always)]
-pub fn response_underdamped<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> State<R> {
+pub fn response_underdamped<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, time: R) -> State<R> {
     // Response of the mode, (15)
     let eta_static = u.force * p.inv_stiffness; // (ft*slug)^0.5
     let envelope = (-p.zeta_omega * time).exp();
@@ -78,12 +65,7 @@ pub fn response_underdamped<R: Real>(
 ///
 /// 11 operations: 2 additions, 7 multiplications, 2 exp.
 #[inline(always)]
-pub fn transition_critical<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> StateJacobian<R> {
+pub fn transition_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> StateJacobian<R> {
     // Response of the mode, (13)
     let scaled_time = p.omega * time;
     let critical_envelope = (-scaled_time).exp();
@@ -92,20 +74,13 @@ pub fn transition_critical<R: Real>(
     // Result
     let no_state = State::splat(R::ZERO);
     State {
-        eta: State {
-            eta: critical_envelope * (R::ONE + scaled_time),
-            eta_dot: critical_envelope * time,
-            ..no_state
-        },
+        eta: State { eta: critical_envelope * (R::ONE + scaled_time), eta_dot: critical_envelope * time, ..no_state },
         eta_dot: State {
             eta: -critical_envelope * p.omega * scaled_time,
             eta_dot: critical_envelope * (R::ONE - scaled_time),
             ..no_state
         },
-        chi: State {
-            chi: exp_minus_chi_decay_time,
-            ..no_state
-        },
+        chi: State { chi: exp_minus_chi_decay_time, ..no_state },
     }
 }
 
@@ -114,12 +89,7 @@ pub fn transition_critical<R: Real>(
 ///
 /// 19 operations: 6 additions, 11 multiplications, 2 exp.
 #[inline(always)]
-pub fn response_critical<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> State<R> {
+pub fn response_critical<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, time: R) -> State<R> {
     // Response of the mode, (15)
     let eta_static = u.force * p.inv_stiffness; // (ft*slug)^0.5
     let scaled_time = p.omega * time;
@@ -142,12 +112,7 @@ pub fn response_critical<R: Real>(
 ///
 /// 18 operations: 4 additions, 11 multiplications, 3 exp.
 #[inline(always)]
-pub fn transition_overdamped<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> StateJacobian<R> {
+pub fn transition_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> StateJacobian<R> {
     // Response of the mode, (14)
     let fast_envelope = (-p.fast_pole * time).exp();
     let slow_envelope = (-p.slow_pole * time).exp();
@@ -168,10 +133,7 @@ pub fn transition_overdamped<R: Real>(
                 * p.inv_pole_gap,
             ..no_state
         },
-        chi: State {
-            chi: exp_minus_chi_decay_time,
-            ..no_state
-        },
+        chi: State { chi: exp_minus_chi_decay_time, ..no_state },
     }
 }
 
@@ -179,12 +141,7 @@ pub fn transition_overdamped<R: Real>(
 ///
 /// 27 operations: 8 additions, 16 multiplications, 3 exp.
 #[inline(always)]
-pub fn response_overdamped<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    time: R,
-) -> State<R> {
+pub fn response_overdamped<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, time: R) -> State<R> {
     // Response of the mode, (15)
     let eta_static = u.force * p.inv_stiffness; // (ft*slug)^0.5
     let fast_envelope = (-p.fast_pole * time).exp();

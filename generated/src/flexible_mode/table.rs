@@ -14,14 +14,8 @@ pub const TABLE: Table = Table {
         Entry::parameter("modes", "omega", "natural frequency"),
         Entry::parameter("modes", "zeta", "damping ratio"),
         Entry::parameter("noise", "sigma", "intensity of the white noise"),
-        Entry::switch(
-            "reduction",
-            "share of the reduction that matches decay rate and variance",
-        ),
-        Entry::switch(
-            "reduction",
-            "share of the reduction that matches variance and gain at zero frequency",
-        ),
+        Entry::switch("reduction", "share of the reduction that matches decay rate and variance"),
+        Entry::switch("reduction", "share of the reduction that matches variance and gain at zero frequency"),
     ],
     choices: &[
         Choice::new(
@@ -60,12 +54,7 @@ pub const TABLE: Table = Table {
             Sign::Positive,
             &[Term::new(1.0, &["omega"])],
         ),
-        Rule::new(
-            "positive",
-            "`zeta` (damping ratio) must be positive",
-            Sign::Positive,
-            &[Term::new(1.0, &["zeta"])],
-        ),
+        Rule::new("positive", "`zeta` (damping ratio) must be positive", Sign::Positive, &[Term::new(1.0, &["zeta"])]),
         Rule::new(
             "not-negative",
             "`sigma` (intensity of the white noise) must not be negative",

@@ -3,122 +3,79 @@
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
-    drift_from, intermediates, slopes,
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian, drift_from, intermediates, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`StateJacobian`].
-    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
-        velocity_by_velocity: velocity.velocity,
-        velocity_by_altitude: velocity.altitude,
-        velocity_by_gamma: velocity.gamma,
-        velocity_by_alpha: velocity.alpha,
-        velocity_by_chi_1: velocity.chi_1,
-        velocity_by_chi_2: velocity.chi_2,
-        velocity_by_chi_3: velocity.chi_3,
-        altitude_by_velocity: altitude.velocity,
-        altitude_by_gamma: altitude.gamma,
-        gamma_by_velocity: gamma.velocity,
-        gamma_by_altitude: gamma.altitude,
-        gamma_by_gamma: gamma.gamma,
-        gamma_by_alpha: gamma.alpha,
-        gamma_by_chi_1: gamma.chi_1,
-        gamma_by_chi_2: gamma.chi_2,
-        gamma_by_chi_3: gamma.chi_3,
-        alpha_by_velocity: alpha.velocity,
-        alpha_by_altitude: alpha.altitude,
-        alpha_by_gamma: alpha.gamma,
-        alpha_by_alpha: alpha.alpha,
-        alpha_by_pitch_rate: alpha.pitch_rate,
-        alpha_by_chi_1: alpha.chi_1,
-        alpha_by_chi_2: alpha.chi_2,
-        alpha_by_chi_3: alpha.chi_3,
-        pitch_rate_by_velocity: pitch_rate.velocity,
-        pitch_rate_by_altitude: pitch_rate.altitude,
-        pitch_rate_by_alpha: pitch_rate.alpha,
-        pitch_rate_by_chi_1: pitch_rate.chi_1,
-        pitch_rate_by_chi_2: pitch_rate.chi_2,
-        pitch_rate_by_chi_3: pitch_rate.chi_3,
-        chi_1_by_chi_1: chi_1.chi_1,
-        chi_2_by_chi_2: chi_2.chi_2,
-        chi_3_by_chi_3: chi_3.chi_3,
+    pub struct StateJacobianEntries in state_jacobian_entries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity { velocity, altitude, gamma, alpha, chi_1, chi_2, chi_3 }
+        altitude { velocity, gamma }
+        gamma { velocity, altitude, gamma, alpha, chi_1, chi_2, chi_3 }
+        alpha { velocity, altitude, gamma, alpha, pitch_rate, chi_1, chi_2, chi_3 }
+        pitch_rate { velocity, altitude, alpha, chi_1, chi_2, chi_3 }
+        chi_1 { chi_1 }
+        chi_2 { chi_2 }
+        chi_3 { chi_3 }
     }
 }
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`InputJacobian`].
-    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
-        velocity_by_phi: velocity.phi,
-        velocity_by_delta_e: velocity.delta_e,
-        velocity_by_delta_c: velocity.delta_c,
-        gamma_by_phi: gamma.phi,
-        gamma_by_delta_e: gamma.delta_e,
-        gamma_by_delta_c: gamma.delta_c,
-        alpha_by_phi: alpha.phi,
-        alpha_by_delta_e: alpha.delta_e,
-        alpha_by_delta_c: alpha.delta_c,
-        pitch_rate_by_phi: pitch_rate.phi,
-        pitch_rate_by_delta_e: pitch_rate.delta_e,
-        pitch_rate_by_delta_c: pitch_rate.delta_c,
+    pub struct InputJacobianEntries in input_jacobian_entries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity { phi, delta_e, delta_c }
+        gamma { phi, delta_e, delta_c }
+        alpha { phi, delta_e, delta_c }
+        pitch_rate { phi, delta_e, delta_c }
     }
 }
 
 /// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_d_d_velocity; // lb*s/ft^2
-    let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity
-        - d_drag_d_velocity; // lb*s/ft^2
-    let d_velocity_rate_d_velocity = d_path_force_d_velocity * p.inv_m; // 1/s
+    let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
+    state.velocity.velocity = d_path_force_d_velocity * p.inv_m; // 1/s
     let d_force_turn_d_velocity = i.normal_coefficient * s.d_turn_factor_d_velocity
         + i.turn_factor * s.d_normal_coefficient_d_velocity; // rad/ft
-    let d_gamma_rate_d_velocity = d_force_turn_d_velocity
-        - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
+    state.gamma.velocity = d_force_turn_d_velocity - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar
-        * (i.c_m * s.d_reference_force_d_velocity
-            + i.reference_force * s.d_c_m_d_velocity) + p.z_t * s.d_thrust_d_velocity; // lb*s/ft
-    let d_pitch_acceleration_d_velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+        * (i.c_m * s.d_reference_force_d_velocity + i.reference_force * s.d_c_m_d_velocity) + p.z_t
+        * s.d_thrust_d_velocity; // lb*s/ft
+    state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
 
     // Derivatives with respect to altitude
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude
         + i.reference_force * s.d_c_d_d_altitude; // lb/ft^2
-    let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude
-        - d_drag_d_altitude; // lb/ft^2
-    let d_velocity_rate_d_altitude = d_path_force_d_altitude * p.inv_m
+    let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
+    state.velocity.altitude = d_path_force_d_altitude * p.inv_m
         - i.sin_gamma * s.d_gravity_d_altitude; // 1/s^2
     let d_force_turn_d_altitude = i.normal_coefficient * s.d_turn_factor_d_altitude
         + i.turn_factor * s.d_normal_coefficient_d_altitude; // rad/s/ft
-    let d_gamma_rate_d_altitude = d_force_turn_d_altitude
-        - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
+    state.gamma.altitude = d_force_turn_d_altitude - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = p.c_bar
-        * (i.c_m * s.d_reference_force_d_altitude
-            + i.reference_force * s.d_c_m_d_altitude) + p.z_t * s.d_thrust_d_altitude; // lb/ft
-    let d_pitch_acceleration_d_altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+        * (i.c_m * s.d_reference_force_d_altitude + i.reference_force * s.d_c_m_d_altitude) + p.z_t
+        * s.d_thrust_d_altitude; // lb/ft
+    state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
 
     // Derivatives with respect to phi
     let d_pitching_moment_d_phi = p.z_t * s.d_thrust_d_phi; // lb
-    let d_pitch_acceleration_d_phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+    input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_2_d_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_2_d_delta_c = d_generalized_force_2_d_delta_c * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_3_d_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_3_d_delta_c = d_generalized_force_3_d_delta_c * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_d_delta_c = p.c_t_eta_1 * d_eta_static_1_d_delta_c
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
@@ -130,58 +87,45 @@ pub fn jacobians_values_from<R: Real>(
         + p.c_m_eta_3 * d_eta_static_3_d_delta_c; // 1/rad
     let d_pitching_moment_d_delta_c = p.c_bar * i.reference_force * d_c_m_d_delta_c
         + p.z_t * d_thrust_d_delta_c; // lb/rad
-    let d_pitch_acceleration_d_delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
+    input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
 
-    // Result
-    let state = StateJacobianEntries {
-        velocity_by_velocity: d_velocity_rate_d_velocity,
-        velocity_by_altitude: d_velocity_rate_d_altitude,
-        velocity_by_gamma: s.d_velocity_rate_d_gamma,
-        velocity_by_alpha: s.d_velocity_rate_d_alpha,
-        velocity_by_chi_1: s.d_velocity_rate_d_chi_1,
-        velocity_by_chi_2: s.d_velocity_rate_d_chi_2,
-        velocity_by_chi_3: s.d_velocity_rate_d_chi_3,
-        altitude_by_velocity: i.sin_gamma,
-        altitude_by_gamma: s.d_altitude_rate_d_gamma,
-        gamma_by_velocity: d_gamma_rate_d_velocity,
-        gamma_by_altitude: d_gamma_rate_d_altitude,
-        gamma_by_gamma: s.d_gamma_rate_d_gamma,
-        gamma_by_alpha: s.d_force_turn_d_alpha,
-        gamma_by_chi_1: s.d_force_turn_d_chi_1,
-        gamma_by_chi_2: s.d_force_turn_d_chi_2,
-        gamma_by_chi_3: s.d_force_turn_d_chi_3,
-        alpha_by_velocity: -d_gamma_rate_d_velocity,
-        alpha_by_altitude: -d_gamma_rate_d_altitude,
-        alpha_by_gamma: -s.d_gamma_rate_d_gamma,
-        alpha_by_alpha: -s.d_force_turn_d_alpha,
-        alpha_by_pitch_rate: R::ONE,
-        alpha_by_chi_1: -s.d_force_turn_d_chi_1,
-        alpha_by_chi_2: -s.d_force_turn_d_chi_2,
-        alpha_by_chi_3: -s.d_force_turn_d_chi_3,
-        pitch_rate_by_velocity: d_pitch_acceleration_d_velocity,
-        pitch_rate_by_altitude: d_pitch_acceleration_d_altitude,
-        pitch_rate_by_alpha: s.d_pitch_acceleration_d_alpha,
-        pitch_rate_by_chi_1: s.d_pitch_acceleration_d_chi_1,
-        pitch_rate_by_chi_2: s.d_pitch_acceleration_d_chi_2,
-        pitch_rate_by_chi_3: s.d_pitch_acceleration_d_chi_3,
-        chi_1_by_chi_1: p.minus_chi_decay_1,
-        chi_2_by_chi_2: p.minus_chi_decay_2,
-        chi_3_by_chi_3: p.minus_chi_decay_3,
-    };
-    let input = InputJacobianEntries {
-        velocity_by_phi: s.d_velocity_rate_d_phi,
-        velocity_by_delta_e: s.d_velocity_rate_d_delta_e,
-        velocity_by_delta_c: s.d_velocity_rate_d_delta_c,
-        gamma_by_phi: s.d_force_turn_d_phi,
-        gamma_by_delta_e: s.d_force_turn_d_delta_e,
-        gamma_by_delta_c: s.d_force_turn_d_delta_c,
-        alpha_by_phi: -s.d_force_turn_d_phi,
-        alpha_by_delta_e: -s.d_force_turn_d_delta_e,
-        alpha_by_delta_c: -s.d_force_turn_d_delta_c,
-        pitch_rate_by_phi: d_pitch_acceleration_d_phi,
-        pitch_rate_by_delta_e: s.d_pitch_acceleration_d_delta_e,
-        pitch_rate_by_delta_c: d_pitch_acceleration_d_delta_c,
-    };
+    state.velocity.gamma = s.d_velocity_rate_d_gamma;
+    state.velocity.alpha = s.d_velocity_rate_d_alpha;
+    state.velocity.chi_1 = s.d_velocity_rate_d_chi_1;
+    state.velocity.chi_2 = s.d_velocity_rate_d_chi_2;
+    state.velocity.chi_3 = s.d_velocity_rate_d_chi_3;
+    state.altitude.velocity = i.sin_gamma;
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.gamma.gamma = s.d_gamma_rate_d_gamma;
+    state.gamma.alpha = s.d_force_turn_d_alpha;
+    state.gamma.chi_1 = s.d_force_turn_d_chi_1;
+    state.gamma.chi_2 = s.d_force_turn_d_chi_2;
+    state.gamma.chi_3 = s.d_force_turn_d_chi_3;
+    state.alpha.velocity = -state.gamma.velocity;
+    state.alpha.altitude = -state.gamma.altitude;
+    state.alpha.gamma = -s.d_gamma_rate_d_gamma;
+    state.alpha.alpha = -s.d_force_turn_d_alpha;
+    state.alpha.pitch_rate = R::ONE;
+    state.alpha.chi_1 = -s.d_force_turn_d_chi_1;
+    state.alpha.chi_2 = -s.d_force_turn_d_chi_2;
+    state.alpha.chi_3 = -s.d_force_turn_d_chi_3;
+    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
+    state.pitch_rate.chi_1 = s.d_pitch_acceleration_d_chi_1;
+    state.pitch_rate.chi_2 = s.d_pitch_acceleration_d_chi_2;
+    state.pitch_rate.chi_3 = s.d_pitch_acceleration_d_chi_3;
+    state.chi_1.chi_1 = p.minus_chi_decay_1;
+    state.chi_2.chi_2 = p.minus_chi_decay_2;
+    state.chi_3.chi_3 = p.minus_chi_decay_3;
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
+    input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.gamma.delta_e = s.d_force_turn_d_delta_e;
+    input.gamma.delta_c = s.d_force_turn_d_delta_c;
+    input.alpha.phi = -s.d_force_turn_d_phi;
+    input.alpha.delta_e = -s.d_force_turn_d_delta_e;
+    input.alpha.delta_c = -s.d_force_turn_d_delta_c;
+    input.pitch_rate.delta_e = s.d_pitch_acceleration_d_delta_e;
     (state, input)
 }
 
@@ -192,9 +136,7 @@ pub fn jacobians_values_from<R: Real>(
 /// 445 operations: 151 additions, 289 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -203,11 +145,7 @@ pub fn jacobians_values<R: Real>(
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 #[inline(always)]
-pub fn jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (StateJacobian<R>, InputJacobian<R>) {
+pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
     (state.dense(), input.dense())
 }
@@ -220,9 +158,7 @@ pub fn jacobians<R: Real>(
 /// 464 operations: 156 additions, 303 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -235,9 +171,7 @@ pub fn drift_and_jacobians_values<R: Real>(
 /// for less than one after the other, eq. (27).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
     (drift, state.dense(), input.dense())

@@ -2,44 +2,26 @@
 
 //! Functions of SDCOM. Units are foot, slug, second and radian.
 
-use super::{
-    Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates, slopes,
-};
-
+use super::{Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`NoiseDerivatives`].
-    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
-        velocity_by_w_gamma_w_gamma: velocity.w_gamma.w_gamma,
-        velocity_by_w_gamma_w_alpha: velocity.w_gamma.w_alpha,
-        velocity_by_w_alpha_w_gamma: velocity.w_alpha.w_gamma,
-        velocity_by_w_alpha_w_alpha: velocity.w_alpha.w_alpha,
-        velocity_by_w_q_w_alpha: velocity.w_q.w_alpha,
-        velocity_by_xi_1_w_alpha: velocity.xi_1.w_alpha,
-        velocity_by_xi_2_w_alpha: velocity.xi_2.w_alpha,
-        velocity_by_xi_3_w_alpha: velocity.xi_3.w_alpha,
-        altitude_by_w_gamma_w_gamma: altitude.w_gamma.w_gamma,
-        altitude_by_w_alpha_w_gamma: altitude.w_alpha.w_gamma,
-        gamma_by_w_gamma_w_gamma: gamma.w_gamma.w_gamma,
-        gamma_by_w_gamma_w_alpha: gamma.w_gamma.w_alpha,
-        gamma_by_w_alpha_w_gamma: gamma.w_alpha.w_gamma,
-        gamma_by_w_alpha_w_alpha: gamma.w_alpha.w_alpha,
-        gamma_by_w_q_w_alpha: gamma.w_q.w_alpha,
-        gamma_by_xi_1_w_alpha: gamma.xi_1.w_alpha,
-        gamma_by_xi_2_w_alpha: gamma.xi_2.w_alpha,
-        gamma_by_xi_3_w_alpha: gamma.xi_3.w_alpha,
-        alpha_by_w_gamma_w_gamma: alpha.w_gamma.w_gamma,
-        alpha_by_w_gamma_w_alpha: alpha.w_gamma.w_alpha,
-        alpha_by_w_alpha_w_gamma: alpha.w_alpha.w_gamma,
-        alpha_by_w_alpha_w_alpha: alpha.w_alpha.w_alpha,
-        alpha_by_w_q_w_alpha: alpha.w_q.w_alpha,
-        alpha_by_xi_1_w_alpha: alpha.xi_1.w_alpha,
-        alpha_by_xi_2_w_alpha: alpha.xi_2.w_alpha,
-        alpha_by_xi_3_w_alpha: alpha.xi_3.w_alpha,
-        pitch_rate_by_w_gamma_w_alpha: pitch_rate.w_gamma.w_alpha,
-        pitch_rate_by_w_alpha_w_alpha: pitch_rate.w_alpha.w_alpha,
-        pitch_rate_by_w_q_w_alpha: pitch_rate.w_q.w_alpha,
+    pub struct NoiseDerivativesEntries in noise_derivatives_entries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
+        velocity {
+            w_gamma { w_gamma, w_alpha } w_alpha { w_gamma, w_alpha } w_q { w_alpha } xi_1 { w_alpha } xi_2 { w_alpha }
+            xi_3 { w_alpha }
+        }
+        altitude { w_gamma { w_gamma } w_alpha { w_gamma } }
+        gamma {
+            w_gamma { w_gamma, w_alpha } w_alpha { w_gamma, w_alpha } w_q { w_alpha } xi_1 { w_alpha } xi_2 { w_alpha }
+            xi_3 { w_alpha }
+        }
+        alpha {
+            w_gamma { w_gamma, w_alpha } w_alpha { w_gamma, w_alpha } w_q { w_alpha } xi_1 { w_alpha } xi_2 { w_alpha }
+            xi_3 { w_alpha }
+        }
+        pitch_rate { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
     }
 }
 
@@ -49,113 +31,94 @@ ahv_core::entries! {
 ///
 /// 466 operations: 140 additions, 321 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn noise_derivatives_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivativesEntries<R> {
+pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
+    let mut noise_derivatives = NoiseDerivativesEntries::splat(R::ZERO);
     let noise_derivatives_term_1 = h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_gamma
         + h.d2_gamma_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
         + h.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = h
-        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = h
-        .d2_force_turn_d_altitude_d_alpha * s.d_altitude_rate_d_gamma;
-    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = h
-        .d2_force_turn_d_alpha_d_alpha * s.d_gamma_rate_d_gamma;
-    let noise_derivatives_term_2 = h.d2_gamma_rate_d_velocity_d_gamma
-        * s.d_velocity_rate_d_alpha
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma = h.d2_force_turn_d_velocity_d_alpha
+        * s.d_velocity_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma = h.d2_force_turn_d_altitude_d_alpha
+        * s.d_altitude_rate_d_gamma;
+    let d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma = h.d2_force_turn_d_alpha_d_alpha
+        * s.d_gamma_rate_d_gamma;
+    let noise_derivatives_term_2 = h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_alpha
         + h.d2_gamma_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha;
-    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h
-        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h
-        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h.d2_force_turn_d_velocity_d_alpha
+        * s.d_velocity_rate_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h.d2_force_turn_d_alpha_d_alpha
+        * s.d_force_turn_d_alpha;
     let noise_derivatives_term_3 = p.shared_noise
-        * (p.chi_diffusion_2 * h.d2_force_turn_d_alpha_d_chi_2
-            + p.chi_diffusion_3 * h.d2_force_turn_d_alpha_d_chi_3)
+        * (p.chi_diffusion_2 * h.d2_force_turn_d_alpha_d_chi_2 + p.chi_diffusion_3 * h.d2_force_turn_d_alpha_d_chi_3)
         + p.chi_diffusion_1 * h.d2_force_turn_d_alpha_d_chi_1;
 
-    NoiseDerivativesEntries {
-        velocity_by_w_gamma_w_gamma: p.w_gamma_2
-            * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
-                + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
-        velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_velocity_rate_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        velocity_by_w_alpha_w_gamma: p.w_alpha_w_gamma
-            * h.d2_velocity_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha,
-        velocity_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        velocity_by_w_q_w_alpha: p.w_alpha_w_q * h.d2_velocity_rate_d_alpha_d_alpha,
-        velocity_by_xi_1_w_alpha: p.w_alpha
-            * (p.shared_noise
-                * (p.chi_diffusion_2 * h.d2_velocity_rate_d_alpha_d_chi_2
-                    + p.chi_diffusion_3 * h.d2_velocity_rate_d_alpha_d_chi_3)
-                + p.chi_diffusion_1 * h.d2_velocity_rate_d_alpha_d_chi_1),
-        velocity_by_xi_2_w_alpha: p.w_alpha_chi_diffusion_2_own_noise
-            * h.d2_velocity_rate_d_alpha_d_chi_2,
-        velocity_by_xi_3_w_alpha: p.w_alpha_chi_diffusion_3_own_noise
-            * h.d2_velocity_rate_d_alpha_d_chi_3,
-        altitude_by_w_gamma_w_gamma: p.w_gamma_2
-            * (i.cos_gamma * s.d_velocity_rate_d_gamma
-                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma),
-        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma
-            * (i.cos_gamma * s.d_velocity_rate_d_alpha
-                + h.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha),
-        gamma_by_w_gamma_w_gamma: p.w_gamma_2 * noise_derivatives_term_1,
-        gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
-                + d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
-                - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma),
-        gamma_by_w_alpha_w_gamma: p.w_alpha_w_gamma * noise_derivatives_term_2,
-        gamma_by_w_alpha_w_alpha: p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
-                - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha),
-        gamma_by_w_q_w_alpha: p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha,
-        gamma_by_xi_1_w_alpha: p.w_alpha * noise_derivatives_term_3,
-        gamma_by_xi_2_w_alpha: p.w_alpha_chi_diffusion_2_own_noise
-            * h.d2_force_turn_d_alpha_d_chi_2,
-        gamma_by_xi_3_w_alpha: p.w_alpha_chi_diffusion_3_own_noise
-            * h.d2_force_turn_d_alpha_d_chi_3,
-        alpha_by_w_gamma_w_gamma: -p.w_gamma_2 * noise_derivatives_term_1,
-        alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
-                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
-                - d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma),
-        alpha_by_w_alpha_w_gamma: -p.w_alpha_w_gamma * noise_derivatives_term_2,
-        alpha_by_w_alpha_w_alpha: p.w_alpha_2
-            * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
-                - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha),
-        alpha_by_w_q_w_alpha: -p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha,
-        alpha_by_xi_1_w_alpha: -p.w_alpha * noise_derivatives_term_3,
-        alpha_by_xi_2_w_alpha: -p.w_alpha_chi_diffusion_2_own_noise
-            * h.d2_force_turn_d_alpha_d_chi_2,
-        alpha_by_xi_3_w_alpha: -p.w_alpha_chi_diffusion_3_own_noise
-            * h.d2_force_turn_d_alpha_d_chi_3,
-        pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
-                + h.d2_pitch_acceleration_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
-                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma),
-        pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
-            * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
-                - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha),
-        pitch_rate_by_w_q_w_alpha: p.w_alpha_w_q
-            * h.d2_pitch_acceleration_d_alpha_d_alpha,
-    }
+    noise_derivatives.velocity.w_gamma.w_gamma = p.w_gamma_2
+        * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
+            + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+    noise_derivatives.velocity.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_velocity_rate_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_velocity_rate_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.velocity.w_alpha.w_gamma = p.w_alpha_w_gamma * h.d2_velocity_rate_d_gamma_d_gamma
+        * s.d_force_turn_d_alpha;
+    noise_derivatives.velocity.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_velocity_rate_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_velocity_rate_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.velocity.w_q.w_alpha = p.w_alpha_w_q * h.d2_velocity_rate_d_alpha_d_alpha;
+    noise_derivatives.velocity.xi_1.w_alpha = p.w_alpha
+        * (p.shared_noise
+            * (p.chi_diffusion_2 * h.d2_velocity_rate_d_alpha_d_chi_2
+                + p.chi_diffusion_3 * h.d2_velocity_rate_d_alpha_d_chi_3)
+            + p.chi_diffusion_1 * h.d2_velocity_rate_d_alpha_d_chi_1);
+    noise_derivatives.velocity.xi_2.w_alpha = p.w_alpha_chi_diffusion_2_own_noise * h.d2_velocity_rate_d_alpha_d_chi_2;
+    noise_derivatives.velocity.xi_3.w_alpha = p.w_alpha_chi_diffusion_3_own_noise * h.d2_velocity_rate_d_alpha_d_chi_3;
+    noise_derivatives.altitude.w_gamma.w_gamma = p.w_gamma_2
+        * (i.cos_gamma * s.d_velocity_rate_d_gamma + h.d2_altitude_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
+    noise_derivatives.altitude.w_alpha.w_gamma = p.w_alpha_w_gamma
+        * (i.cos_gamma * s.d_velocity_rate_d_alpha + h.d2_altitude_rate_d_gamma_d_gamma * s.d_force_turn_d_alpha);
+    noise_derivatives.gamma.w_gamma.w_gamma = p.w_gamma_2 * noise_derivatives_term_1;
+    noise_derivatives.gamma.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+            + d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma
+            - d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma);
+    noise_derivatives.gamma.w_alpha.w_gamma = p.w_alpha_w_gamma * noise_derivatives_term_2;
+    noise_derivatives.gamma.w_alpha.w_alpha = p.w_alpha_2
+        * (d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha
+            - d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha);
+    noise_derivatives.gamma.w_q.w_alpha = p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha;
+    noise_derivatives.gamma.xi_1.w_alpha = p.w_alpha * noise_derivatives_term_3;
+    noise_derivatives.gamma.xi_2.w_alpha = p.w_alpha_chi_diffusion_2_own_noise * h.d2_force_turn_d_alpha_d_chi_2;
+    noise_derivatives.gamma.xi_3.w_alpha = p.w_alpha_chi_diffusion_3_own_noise * h.d2_force_turn_d_alpha_d_chi_3;
+    noise_derivatives.alpha.w_gamma.w_gamma = -p.w_gamma_2 * noise_derivatives_term_1;
+    noise_derivatives.alpha.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (d2_force_turn_d_alpha_d_alpha_times_d_gamma_rate_d_gamma
+            - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_gamma
+            - d2_force_turn_d_alpha_d_altitude_times_d_altitude_rate_d_gamma);
+    noise_derivatives.alpha.w_alpha.w_gamma = -p.w_alpha_w_gamma * noise_derivatives_term_2;
+    noise_derivatives.alpha.w_alpha.w_alpha = p.w_alpha_2
+        * (d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha
+            - d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha);
+    noise_derivatives.alpha.w_q.w_alpha = -p.w_alpha_w_q * h.d2_force_turn_d_alpha_d_alpha;
+    noise_derivatives.alpha.xi_1.w_alpha = -p.w_alpha * noise_derivatives_term_3;
+    noise_derivatives.alpha.xi_2.w_alpha = -p.w_alpha_chi_diffusion_2_own_noise * h.d2_force_turn_d_alpha_d_chi_2;
+    noise_derivatives.alpha.xi_3.w_alpha = -p.w_alpha_chi_diffusion_3_own_noise * h.d2_force_turn_d_alpha_d_chi_3;
+    noise_derivatives.pitch_rate.w_gamma.w_alpha = p.w_alpha_w_gamma
+        * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_gamma
+            + h.d2_pitch_acceleration_d_altitude_d_alpha * s.d_altitude_rate_d_gamma
+            - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_gamma_rate_d_gamma);
+    noise_derivatives.pitch_rate.w_alpha.w_alpha = p.w_alpha_2
+        * (h.d2_pitch_acceleration_d_velocity_d_alpha * s.d_velocity_rate_d_alpha
+            - h.d2_pitch_acceleration_d_alpha_d_alpha * s.d_force_turn_d_alpha);
+    noise_derivatives.pitch_rate.w_q.w_alpha = p.w_alpha_w_q * h.d2_pitch_acceleration_d_alpha_d_alpha;
+    noise_derivatives
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 #[inline(always)]
-pub fn noise_derivatives<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivatives<R> {
+pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivatives<R> {
     noise_derivatives_values(x, u, p).dense()
 }
 
@@ -172,10 +135,10 @@ pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> S
         * (h.d2_gamma_rate_d_velocity_d_gamma * s.d_velocity_rate_d_gamma
             + h.d2_gamma_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
             + h.d2_gamma_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);
-    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h
-        .d2_force_turn_d_velocity_d_alpha * s.d_velocity_rate_d_alpha;
-    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h
-        .d2_force_turn_d_alpha_d_alpha * s.d_force_turn_d_alpha;
+    let d2_force_turn_d_alpha_d_velocity_times_d_velocity_rate_d_alpha = h.d2_force_turn_d_velocity_d_alpha
+        * s.d_velocity_rate_d_alpha;
+    let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h.d2_force_turn_d_alpha_d_alpha
+        * s.d_force_turn_d_alpha;
 
     State {
         velocity: p.half_w_gamma_2

@@ -6,112 +6,96 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Quantities of the drift that other functions need.
+    /// Quantities of the drift that other functions need. A field without a description is what its name says:
+    /// its formula and unit stand in [`intermediates`].
     pub struct Intermediates<R> {
         /// Air density over its reference, dimensionless.
-        pub density_ratio: R,
+        density_ratio,
         /// Air density, slug/ft^3.
-        pub density: R,
-        /// `x.velocity * x.velocity`.
-        pub velocity_2: R,
+        density,
         /// Dynamic pressure, lb/ft^2.
-        pub dynamic_pressure: R,
+        dynamic_pressure,
         /// Dynamic pressure times reference area, lb/ft.
-        pub reference_force: R,
+        reference_force,
         /// Sin of the angle of attack, dimensionless.
-        pub sin_alpha: R,
+        sin_alpha,
         /// Cos of the angle of attack, dimensionless.
-        pub cos_alpha: R,
+        cos_alpha,
         /// Sin of the flight-path angle, dimensionless.
-        pub sin_gamma: R,
+        sin_gamma,
         /// Cos of the flight-path angle, dimensionless.
-        pub cos_gamma: R,
+        cos_gamma,
         /// Radius of the Earth over the distance to its centre, dimensionless.
-        pub radius_ratio: R,
-        /// `i.radius_ratio * i.radius_ratio`.
-        pub radius_ratio_2: R,
+        radius_ratio,
         /// Acceleration of gravity at altitude, ft/s^2.
-        pub gravity: R,
-        /// `1 / x.velocity`.
-        pub inv_velocity: R,
+        gravity,
         /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-        pub gravity_turn: R,
+        gravity_turn,
         /// Turn rate per force coefficient across the flight path, 1/s.
-        pub turn_factor: R,
+        turn_factor,
         /// Canard deflection as commanded, rad.
-        pub canard_commanded: R,
+        canard_commanded,
         /// Canard deflection, commanded and slaved, rad.
-        pub canard_deflection: R,
-        /// `x.alpha * x.alpha`.
-        pub alpha_2: R,
+        canard_deflection,
         /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
-        pub c_n_1: R,
+        c_n_1,
         /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
-        pub c_n_2: R,
+        c_n_2,
         /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
-        pub c_n_3: R,
+        c_n_3,
         /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-        pub generalized_force_1: R,
+        generalized_force_1,
         /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-        pub generalized_force_2: R,
+        generalized_force_2,
         /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
-        pub generalized_force_3: R,
+        generalized_force_3,
         /// Static flexible coordinate of mode 1, (ft*slug)^0.5.
-        pub eta_static_1: R,
+        eta_static_1,
         /// Reduced flexible coordinate of mode 1, (ft*slug)^0.5.
-        pub eta_1: R,
+        eta_1,
         /// Static flexible coordinate of mode 2, (ft*slug)^0.5.
-        pub eta_static_2: R,
+        eta_static_2,
         /// Reduced flexible coordinate of mode 2, (ft*slug)^0.5.
-        pub eta_2: R,
+        eta_2,
         /// Static flexible coordinate of mode 3, (ft*slug)^0.5.
-        pub eta_static_3: R,
+        eta_static_3,
         /// Reduced flexible coordinate of mode 3, (ft*slug)^0.5.
-        pub eta_3: R,
-        /// `x.alpha * i.alpha_2`.
-        pub alpha_3: R,
+        eta_3,
         /// Slope of the thrust coefficient in the fuel equivalence ratio, dimensionless.
-        pub c_t_phi: R,
+        c_t_phi,
         /// Thrust coefficient, dimensionless.
-        pub c_t: R,
+        c_t,
         /// Lift coefficient, dimensionless.
-        pub c_l: R,
-        /// `u.delta_e * u.delta_e`.
-        pub delta_e_2: R,
-        /// `i.canard_deflection * i.canard_deflection`.
-        pub canard_deflection_2: R,
+        c_l,
         /// Drag coefficient, dimensionless.
-        pub c_d: R,
+        c_d,
         /// Pitching-moment coefficient, dimensionless.
-        pub c_m: R,
+        c_m,
         /// Thrust, lb/ft.
-        pub thrust: R,
+        thrust,
         /// Drag, lb/ft.
-        pub drag: R,
+        drag,
         /// Pitching moment, lb.
-        pub pitching_moment: R,
+        pitching_moment,
         /// Coefficient of the force across the flight path, dimensionless.
-        pub normal_coefficient: R,
+        normal_coefficient,
         /// Force along the flight path, lb/ft.
-        pub path_force: R,
+        path_force,
         /// Rate of the velocity, ft/s^2.
-        pub velocity_rate: R,
+        velocity_rate,
         /// Rate of the altitude, ft/s.
-        pub altitude_rate: R,
+        altitude_rate,
         /// Rate of the flight-path angle, rad/s.
-        pub gamma_rate: R,
+        gamma_rate,
         /// Pitch acceleration, rad/s^2.
-        pub pitch_acceleration: R,
+        pitch_acceleration,
+        velocity_2, radius_ratio_2, inv_velocity, alpha_2, alpha_3, delta_e_2, canard_deflection_2,
     }
 }
 
 /// Computes [`Intermediates`].
 #[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
+pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
 
     // Air, (2)
@@ -130,8 +114,7 @@ pub fn intermediates<R: Real>(
     i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
     i.gravity = p.g * i.radius_ratio_2; // ft/s^2
     i.inv_velocity = x.velocity.recip();
-    i.gravity_turn = i.gravity * i.inv_velocity
-        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
+    i.gravity_turn = i.gravity * i.inv_velocity - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
     i.turn_factor = i.density * x.velocity * p.half_s_over_m; // 1/s
@@ -173,10 +156,7 @@ pub fn intermediates<R: Real>(
 
     // Curve fits, (3)
     i.alpha_3 = x.alpha * i.alpha_2;
-    i.c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * i.alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    i.c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * i.alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     i.c_t = p.c_t_0
         + i.c_t_phi * u.phi
         + p.c_t_alpha_3 * i.alpha_3
@@ -230,143 +210,31 @@ pub fn intermediates<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the Jacobians that other functions need.
+    /// Quantities of the Jacobians that other functions need. A field without a description is what its name
+    /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-        pub d_dynamic_pressure_d_velocity: R,
-        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-        pub d_reference_force_d_velocity: R,
-        /// Derivative of thrust coefficient with respect to velocity, s/ft.
-        pub d_c_t_d_velocity: R,
-        /// Derivative of thrust with respect to velocity, lb*s/ft^2.
-        pub d_thrust_d_velocity: R,
-        /// Derivative of drag coefficient with respect to velocity, s/ft.
-        pub d_c_d_d_velocity: R,
-        /// `i.inv_velocity * i.inv_velocity`.
-        pub inv_velocity_2: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// velocity, 1/ft.
-        pub d_gravity_turn_d_velocity: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-        pub d_turn_factor_d_velocity: R,
-        /// Derivative of coefficient of the force across the flight path with respect to velocity, s/ft.
-        pub d_normal_coefficient_d_velocity: R,
-        /// Derivative of pitching-moment coefficient with respect to velocity, s/ft.
-        pub d_c_m_d_velocity: R,
-        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-        pub d_radius_ratio_d_altitude: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-        pub d_gravity_d_altitude: R,
-        /// Derivative of air density with respect to altitude, slug/ft^4.
-        pub d_density_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-        pub d_reference_force_d_altitude: R,
-        /// Derivative of thrust coefficient with respect to altitude, 1/ft.
-        pub d_c_t_d_altitude: R,
-        /// Derivative of thrust with respect to altitude, lb/ft^2.
-        pub d_thrust_d_altitude: R,
-        /// Derivative of drag coefficient with respect to altitude, 1/ft.
-        pub d_c_d_d_altitude: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// altitude, 1/s/ft.
-        pub d_gravity_turn_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-        pub d_turn_factor_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to altitude, 1/ft.
-        pub d_normal_coefficient_d_altitude: R,
-        /// Derivative of pitching-moment coefficient with respect to altitude, 1/ft.
-        pub d_c_m_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to gamma, ft/s^2/rad.
-        pub d_velocity_rate_d_gamma: R,
-        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-        pub d_altitude_rate_d_gamma: R,
-        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-        pub d_cos_gamma_d_gamma: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma, 1/s.
-        pub d_gamma_rate_d_gamma: R,
-        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-        pub d_cos_alpha_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_1_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_2_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_3_d_alpha: R,
-        /// Derivative of thrust coefficient with respect to alpha, 1/rad.
-        pub d_c_t_d_alpha: R,
-        /// Derivative of thrust with respect to alpha, lb/ft/rad.
-        pub d_thrust_d_alpha: R,
-        /// Derivative of drag coefficient with respect to alpha, 1/rad.
-        pub d_c_d_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to alpha, ft/s^2/rad.
-        pub d_velocity_rate_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha, 1/rad.
-        pub d_normal_coefficient_d_alpha: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha, 1/s.
-        pub d_force_turn_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha, 1/rad.
-        pub d_c_m_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to alpha, 1/s^2.
-        pub d_pitch_acceleration_d_alpha: R,
-        /// `i.cos_alpha * c_t_eta_1`.
-        pub cos_alpha_c_t_eta_1: R,
-        /// Derivative of rate of the velocity with respect to chi_1, ft^0.5/s^2/slug^0.5.
-        pub d_velocity_rate_d_chi_1: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_1, 1/(ft*slug)^0.5.
-        pub d_normal_coefficient_d_chi_1: R,
-        /// Derivative of turn rate by the force across the flight path with respect to chi_1, rad/s/ft^0.5/slug^0.5.
-        pub d_force_turn_d_chi_1: R,
-        /// Derivative of pitch acceleration with respect to chi_1, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_chi_1: R,
-        /// `i.cos_alpha * c_t_eta_2`.
-        pub cos_alpha_c_t_eta_2: R,
-        /// Derivative of rate of the velocity with respect to chi_2, ft^0.5/s^2/slug^0.5.
-        pub d_velocity_rate_d_chi_2: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_2, 1/(ft*slug)^0.5.
-        pub d_normal_coefficient_d_chi_2: R,
-        /// Derivative of turn rate by the force across the flight path with respect to chi_2, rad/s/ft^0.5/slug^0.5.
-        pub d_force_turn_d_chi_2: R,
-        /// Derivative of pitch acceleration with respect to chi_2, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_chi_2: R,
-        /// `i.cos_alpha * c_t_eta_3`.
-        pub cos_alpha_c_t_eta_3: R,
-        /// Derivative of rate of the velocity with respect to chi_3, ft^0.5/s^2/slug^0.5.
-        pub d_velocity_rate_d_chi_3: R,
-        /// Derivative of coefficient of the force across the flight path with respect to chi_3, 1/(ft*slug)^0.5.
-        pub d_normal_coefficient_d_chi_3: R,
-        /// Derivative of turn rate by the force across the flight path with respect to chi_3, rad/s/ft^0.5/slug^0.5.
-        pub d_force_turn_d_chi_3: R,
-        /// Derivative of pitch acceleration with respect to chi_3, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_acceleration_d_chi_3: R,
-        /// Derivative of thrust with respect to phi, lb/ft.
-        pub d_thrust_d_phi: R,
-        /// Derivative of rate of the velocity with respect to phi, ft/s^2.
-        pub d_velocity_rate_d_phi: R,
-        /// Derivative of turn rate by the force across the flight path with respect to phi, rad/s.
-        pub d_force_turn_d_phi: R,
         /// Partial derivative of drag coefficient with respect to canard deflection, commanded and slaved, 1/rad.
-        pub slope_of_c_d_in_canard_deflection: R,
-        /// Derivative of rate of the velocity with respect to delta_e, ft/s^2/rad.
-        pub d_velocity_rate_d_delta_e: R,
-        /// Derivative of turn rate by the force across the flight path with respect to delta_e, 1/s.
-        pub d_force_turn_d_delta_e: R,
-        /// Derivative of pitch acceleration with respect to delta_e, 1/s^2.
-        pub d_pitch_acceleration_d_delta_e: R,
-        /// Derivative of rate of the velocity with respect to delta_c, ft/s^2/rad.
-        pub d_velocity_rate_d_delta_c: R,
-        /// Derivative of turn rate by the force across the flight path with respect to delta_c, 1/s.
-        pub d_force_turn_d_delta_c: R,
+        slope_of_c_d_in_canard_deflection,
+        d_dynamic_pressure_d_velocity, d_reference_force_d_velocity, d_c_t_d_velocity, d_thrust_d_velocity,
+        d_c_d_d_velocity, inv_velocity_2, d_gravity_turn_d_velocity, d_turn_factor_d_velocity,
+        d_normal_coefficient_d_velocity, d_c_m_d_velocity, d_radius_ratio_d_altitude, d_gravity_d_altitude,
+        d_density_d_altitude, d_reference_force_d_altitude, d_c_t_d_altitude, d_thrust_d_altitude, d_c_d_d_altitude,
+        d_gravity_turn_d_altitude, d_turn_factor_d_altitude, d_normal_coefficient_d_altitude, d_c_m_d_altitude,
+        d_velocity_rate_d_gamma, d_altitude_rate_d_gamma, d_cos_gamma_d_gamma, d_gamma_rate_d_gamma,
+        d_cos_alpha_d_alpha, d_c_n_1_d_alpha, d_c_n_2_d_alpha, d_c_n_3_d_alpha, d_c_t_d_alpha, d_thrust_d_alpha,
+        d_c_d_d_alpha, d_velocity_rate_d_alpha, d_normal_coefficient_d_alpha, d_force_turn_d_alpha, d_c_m_d_alpha,
+        d_pitch_acceleration_d_alpha, cos_alpha_c_t_eta_1, d_velocity_rate_d_chi_1, d_normal_coefficient_d_chi_1,
+        d_force_turn_d_chi_1, d_pitch_acceleration_d_chi_1, cos_alpha_c_t_eta_2, d_velocity_rate_d_chi_2,
+        d_normal_coefficient_d_chi_2, d_force_turn_d_chi_2, d_pitch_acceleration_d_chi_2, cos_alpha_c_t_eta_3,
+        d_velocity_rate_d_chi_3, d_normal_coefficient_d_chi_3, d_force_turn_d_chi_3, d_pitch_acceleration_d_chi_3,
+        d_thrust_d_phi, d_velocity_rate_d_phi, d_force_turn_d_phi, d_velocity_rate_d_delta_e, d_force_turn_d_delta_e,
+        d_pitch_acceleration_d_delta_e, d_velocity_rate_d_delta_c, d_force_turn_d_delta_c,
     }
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
-fn slopes_part_1<R: Real>(
-    s: &mut Slopes<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) {
+fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to velocity
     s.d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
     s.d_reference_force_d_velocity = p.s * s.d_dynamic_pressure_d_velocity; // lb*s/ft^2
@@ -391,8 +259,7 @@ fn slopes_part_1<R: Real>(
     let d_c_l_d_velocity = p.c_l_eta_1 * d_eta_static_1_d_velocity
         + p.c_l_eta_2 * d_eta_static_2_d_velocity
         + p.c_l_eta_3 * d_eta_static_3_d_velocity; // s/ft
-    s.d_normal_coefficient_d_velocity = i.sin_alpha * s.d_c_t_d_velocity
-        + d_c_l_d_velocity; // s/ft
+    s.d_normal_coefficient_d_velocity = i.sin_alpha * s.d_c_t_d_velocity + d_c_l_d_velocity; // s/ft
     s.d_c_m_d_velocity = p.c_m_eta_1 * d_eta_static_1_d_velocity
         + p.c_m_eta_2 * d_eta_static_2_d_velocity
         + p.c_m_eta_3 * d_eta_static_3_d_velocity; // s/ft
@@ -424,8 +291,7 @@ fn slopes_part_1<R: Real>(
     let d_c_l_d_altitude = p.c_l_eta_1 * d_eta_static_1_d_altitude
         + p.c_l_eta_2 * d_eta_static_2_d_altitude
         + p.c_l_eta_3 * d_eta_static_3_d_altitude; // 1/ft
-    s.d_normal_coefficient_d_altitude = i.sin_alpha * s.d_c_t_d_altitude
-        + d_c_l_d_altitude; // 1/ft
+    s.d_normal_coefficient_d_altitude = i.sin_alpha * s.d_c_t_d_altitude + d_c_l_d_altitude; // 1/ft
     s.d_c_m_d_altitude = p.c_m_eta_1 * d_eta_static_1_d_altitude
         + p.c_m_eta_2 * d_eta_static_2_d_altitude
         + p.c_m_eta_3 * d_eta_static_3_d_altitude; // 1/ft
@@ -443,13 +309,7 @@ fn slopes_part_1<R: Real>(
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
-fn slopes_part_2<R: Real>(
-    s: &mut Slopes<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) {
+fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to alpha
     let d_generalized_force_1_d_alpha = i.reference_force * s.d_c_n_1_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_alpha = d_generalized_force_1_d_alpha * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
@@ -503,8 +363,7 @@ fn slopes_part_2<R: Real>(
     s.d_velocity_rate_d_chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
     s.d_normal_coefficient_d_chi_1 = i.sin_alpha * p.c_t_eta_1 + p.c_l_eta_1; // 1/(ft*slug)^0.5
     s.d_force_turn_d_chi_1 = i.turn_factor * s.d_normal_coefficient_d_chi_1; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_1 = i.reference_force
-        * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_1 = i.reference_force * p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1; // lb/ft^0.5/slug^0.5
     s.d_pitch_acceleration_d_chi_1 = d_pitching_moment_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
@@ -513,8 +372,7 @@ fn slopes_part_2<R: Real>(
     s.d_velocity_rate_d_chi_2 = d_path_force_d_chi_2 * p.inv_m; // ft^0.5/s^2/slug^0.5
     s.d_normal_coefficient_d_chi_2 = i.sin_alpha * p.c_t_eta_2 + p.c_l_eta_2; // 1/(ft*slug)^0.5
     s.d_force_turn_d_chi_2 = i.turn_factor * s.d_normal_coefficient_d_chi_2; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_2 = i.reference_force
-        * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_2 = i.reference_force * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     s.d_pitch_acceleration_d_chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
@@ -523,8 +381,7 @@ fn slopes_part_2<R: Real>(
     s.d_velocity_rate_d_chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
     s.d_normal_coefficient_d_chi_3 = i.sin_alpha * p.c_t_eta_3 + p.c_l_eta_3; // 1/(ft*slug)^0.5
     s.d_force_turn_d_chi_3 = i.turn_factor * s.d_normal_coefficient_d_chi_3; // rad/s/ft^0.5/slug^0.5
-    let d_pitching_moment_d_chi_3 = i.reference_force
-        * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
+    let d_pitching_moment_d_chi_3 = i.reference_force * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     s.d_pitch_acceleration_d_chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to phi
@@ -533,12 +390,7 @@ fn slopes_part_2<R: Real>(
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
-fn slopes_part_3<R: Real>(
-    s: &mut Slopes<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) {
+fn slopes_part_3<R: Real>(s: &mut Slopes<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to phi
     let d_path_force_d_phi = i.cos_alpha * s.d_thrust_d_phi; // lb/ft
     s.d_velocity_rate_d_phi = d_path_force_d_phi * p.inv_m; // ft/s^2
@@ -556,8 +408,7 @@ fn slopes_part_3<R: Real>(
         + p.c_t_eta_2 * d_eta_static_2_d_delta_e
         + p.c_t_eta_3 * d_eta_static_3_d_delta_e; // 1/rad
     let d_thrust_d_delta_e = i.reference_force * d_c_t_d_delta_e; // lb/ft/rad
-    s.slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * i.canard_deflection
-        + p.c_d_delta_c; // 1/rad
+    s.slope_of_c_d_in_canard_deflection = p.two_c_d_delta_c_2 * i.canard_deflection + p.c_d_delta_c; // 1/rad
     let d_c_d_d_delta_e = p.two_c_d_delta_e_2 * u.delta_e
         + p.c_d_delta_e
         + s.slope_of_c_d_in_canard_deflection * p.canard_gain
@@ -582,14 +433,11 @@ fn slopes_part_3<R: Real>(
     s.d_pitch_acceleration_d_delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_2_d_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_2_d_delta_c = d_generalized_force_2_d_delta_c * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad
-    let d_generalized_force_3_d_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_3_d_delta_c = d_generalized_force_3_d_delta_c * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad
     let d_c_t_d_delta_c = p.c_t_eta_1 * d_eta_static_1_d_delta_c
         + p.c_t_eta_2 * d_eta_static_2_d_delta_c
@@ -612,12 +460,7 @@ fn slopes_part_3<R: Real>(
 
 /// Computes [`Slopes`].
 #[inline(always)]
-pub fn slopes<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Slopes<R> {
+pub fn slopes<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Slopes<R> {
     let mut s = Slopes::splat(R::ZERO);
     slopes_part_1(&mut s, x, p, i);
     slopes_part_2(&mut s, x, u, p, i);
@@ -626,282 +469,72 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the second derivatives that other functions, or several parts of these, need.
+    /// Quantities of the second derivatives that other functions, or several parts of these, need. A field
+    /// without a description is what its name says: its formula and unit stand in [`curvatures`].
     pub struct Curvatures<R> {
-        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
-        pub d2_reference_force_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and altitude,
-        /// slug^0.5*s/ft^1.5.
-        pub d2_eta_static_1_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and altitude,
-        /// slug^0.5*s/ft^1.5.
-        pub d2_eta_static_2_d_velocity_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and altitude,
-        /// slug^0.5*s/ft^1.5.
-        pub d2_eta_static_3_d_velocity_d_altitude: R,
-        /// Derivative of thrust with respect to velocity and altitude, lb*s/ft^3.
-        pub d2_thrust_d_velocity_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to velocity and alpha, 1/s/rad.
-        pub d2_velocity_rate_d_velocity_d_alpha: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
-        pub d2_gravity_d_altitude_d_altitude: R,
-        /// `i.density_ratio * inv_h_s`.
-        pub density_ratio_over_h_s: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
-        pub d2_reference_force_d_altitude_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5.
-        pub d2_eta_static_1_d_altitude_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5.
-        pub d2_eta_static_2_d_altitude_d_altitude: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5.
-        pub d2_eta_static_3_d_altitude_d_altitude: R,
-        /// Derivative of thrust with respect to altitude and altitude, lb/ft^3.
-        pub d2_thrust_d_altitude_d_altitude: R,
-        /// Derivative of rate of the velocity with respect to altitude and gamma, 1/s^2/rad.
-        pub d2_velocity_rate_d_altitude_d_gamma: R,
-        /// Derivative of rate of the velocity with respect to altitude and alpha, 1/s^2/rad.
-        pub d2_velocity_rate_d_altitude_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to gamma and gamma, ft/s^2/rad^2.
-        pub d2_velocity_rate_d_gamma_d_gamma: R,
-        /// Derivative of rate of the velocity with respect to alpha and alpha, ft/s^2/rad^2.
-        pub d2_velocity_rate_d_alpha_d_alpha: R,
-        /// Derivative of rate of the velocity with respect to alpha and chi_1, ft^0.5/s^2/rad/slug^0.5.
-        pub d2_velocity_rate_d_alpha_d_chi_1: R,
-        /// Derivative of rate of the velocity with respect to alpha and chi_2, ft^0.5/s^2/rad/slug^0.5.
-        pub d2_velocity_rate_d_alpha_d_chi_2: R,
-        /// Derivative of rate of the velocity with respect to alpha and chi_3, ft^0.5/s^2/rad/slug^0.5.
-        pub d2_velocity_rate_d_alpha_d_chi_3: R,
-        /// Derivative of rate of the altitude with respect to gamma and gamma, ft/s/rad^2.
-        pub d2_altitude_rate_d_gamma_d_gamma: R,
-        /// Derivative of rate of the flight-path angle with respect to velocity and altitude, rad/ft^2.
-        pub d2_gamma_rate_d_velocity_d_altitude: R,
-        /// Derivative of rate of the flight-path angle with respect to velocity and gamma, 1/ft.
-        pub d2_gamma_rate_d_velocity_d_gamma: R,
-        /// Derivative of turn rate by the force across the flight path with respect to velocity and alpha, 1/ft.
-        pub d2_force_turn_d_velocity_d_alpha: R,
-        /// Derivative of rate of the flight-path angle with respect to altitude and altitude, rad/s/ft^2.
-        pub d2_gamma_rate_d_altitude_d_altitude: R,
-        /// Derivative of rate of the flight-path angle with respect to altitude and gamma, 1/s/ft.
-        pub d2_gamma_rate_d_altitude_d_gamma: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and alpha, 1/s/ft.
-        pub d2_force_turn_d_altitude_d_alpha: R,
-        /// Derivative of rate of the flight-path angle with respect to gamma and gamma, 1/s/rad.
-        pub d2_gamma_rate_d_gamma_d_gamma: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and alpha, 1/s/rad.
-        pub d2_force_turn_d_alpha_d_alpha: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and chi_1,
-        /// 1/s/ft^0.5/slug^0.5.
-        pub d2_force_turn_d_alpha_d_chi_1: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and chi_2,
-        /// 1/s/ft^0.5/slug^0.5.
-        pub d2_force_turn_d_alpha_d_chi_2: R,
-        /// Derivative of turn rate by the force across the flight path with respect to alpha and chi_3,
-        /// 1/s/ft^0.5/slug^0.5.
-        pub d2_force_turn_d_alpha_d_chi_3: R,
-        /// Derivative of pitch acceleration with respect to velocity and alpha, 1/s/ft.
-        pub d2_pitch_acceleration_d_velocity_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to altitude and alpha, 1/s^2/ft.
-        pub d2_pitch_acceleration_d_altitude_d_alpha: R,
-        /// Derivative of pitch acceleration with respect to alpha and alpha, 1/s^2/rad.
-        pub d2_pitch_acceleration_d_alpha_d_alpha: R,
-        /// Derivative of dynamic pressure with respect to velocity and altitude, lb*s/ft^4.
-        pub d2_dynamic_pressure_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
-        pub d2_generalized_force_1_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
-        pub d2_generalized_force_2_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
-        pub d2_generalized_force_3_d_velocity_d_altitude: R,
-        /// Derivative of thrust coefficient with respect to velocity and altitude, s/ft^2.
-        pub d2_c_t_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_1_d_velocity_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to velocity and alpha,
-        /// slug^0.5*s/ft^0.5/rad.
-        pub d2_eta_static_1_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_2_d_velocity_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to velocity and alpha,
-        /// slug^0.5*s/ft^0.5/rad.
-        pub d2_eta_static_2_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_3_d_velocity_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to velocity and alpha,
-        /// slug^0.5*s/ft^0.5/rad.
-        pub d2_eta_static_3_d_velocity_d_alpha: R,
-        /// Derivative of thrust coefficient with respect to velocity and alpha, s/ft/rad.
-        pub d2_c_t_d_velocity_d_alpha: R,
-        /// Derivative of thrust with respect to velocity and alpha, lb*s/ft^2/rad.
-        pub d2_thrust_d_velocity_d_alpha: R,
-        /// Derivative of drag coefficient with respect to velocity and alpha, s/ft/rad.
-        pub d2_c_d_d_velocity_d_alpha: R,
-        /// Derivative of drag with respect to velocity and alpha, lb*s/ft^2/rad.
-        pub d2_drag_d_velocity_d_alpha: R,
-        /// Derivative of force along the flight path with respect to velocity and alpha, lb*s/ft^2/rad.
-        pub d2_path_force_d_velocity_d_alpha: R,
-        /// `i.radius_ratio * i.radius_ratio_2`.
-        pub radius_ratio_3: R,
-        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude and altitude,
-        /// 1/ft^2.
-        pub d2_radius_ratio_d_altitude_d_altitude: R,
-        /// `s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude`.
-        pub power_2_of_d_radius_ratio_d_altitude: R,
-        /// Derivative of air density over its reference with respect to altitude and altitude, 1/ft^2.
-        pub d2_density_ratio_d_altitude_d_altitude: R,
-        /// Derivative of air density with respect to altitude and altitude, slug/ft^5.
-        pub d2_density_d_altitude_d_altitude: R,
-        /// Derivative of dynamic pressure with respect to altitude and altitude, lb/ft^4.
-        pub d2_dynamic_pressure_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
-        pub d2_generalized_force_1_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
-        pub d2_generalized_force_2_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
-        pub d2_generalized_force_3_d_altitude_d_altitude: R,
-        /// Derivative of thrust coefficient with respect to altitude and altitude, 1/ft^2.
-        pub d2_c_t_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_1_d_altitude_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to altitude and alpha,
-        /// slug^0.5/ft^0.5/rad.
-        pub d2_eta_static_1_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_2_d_altitude_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to altitude and alpha,
-        /// slug^0.5/ft^0.5/rad.
-        pub d2_eta_static_2_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_3_d_altitude_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to altitude and alpha,
-        /// slug^0.5/ft^0.5/rad.
-        pub d2_eta_static_3_d_altitude_d_alpha: R,
-        /// Derivative of thrust coefficient with respect to altitude and alpha, 1/ft/rad.
-        pub d2_c_t_d_altitude_d_alpha: R,
-        /// Derivative of thrust with respect to altitude and alpha, lb/ft^2/rad.
-        pub d2_thrust_d_altitude_d_alpha: R,
-        /// Derivative of drag coefficient with respect to altitude and alpha, 1/ft/rad.
-        pub d2_c_d_d_altitude_d_alpha: R,
-        /// Derivative of drag with respect to altitude and alpha, lb/ft^2/rad.
-        pub d2_drag_d_altitude_d_alpha: R,
-        /// Derivative of force along the flight path with respect to altitude and alpha, lb/ft^2/rad.
-        pub d2_path_force_d_altitude_d_alpha: R,
-        /// Derivative of cos of the angle of attack with respect to alpha and alpha, 1/rad^2.
-        pub d2_cos_alpha_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_1_d_alpha_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
-        pub d2_eta_static_1_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_2_d_alpha_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
-        pub d2_eta_static_2_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_3_d_alpha_d_alpha: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/rad^2.
-        pub d2_eta_static_3_d_alpha_d_alpha: R,
-        /// Derivative of slope of the thrust coefficient in the fuel equivalence ratio with respect to alpha and
-        /// alpha, 1/rad^2.
-        pub d2_c_t_phi_d_alpha_d_alpha: R,
-        /// Derivative of thrust coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_t_d_alpha_d_alpha: R,
-        /// Derivative of thrust with respect to alpha and alpha, lb/ft/rad^2.
-        pub d2_thrust_d_alpha_d_alpha: R,
-        /// Derivative of drag coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_d_d_alpha_d_alpha: R,
-        /// Derivative of drag with respect to alpha and alpha, lb/ft/rad^2.
-        pub d2_drag_d_alpha_d_alpha: R,
-        /// Derivative of force along the flight path with respect to alpha and alpha, lb/ft/rad^2.
-        pub d2_path_force_d_alpha_d_alpha: R,
-        /// Derivative of force along the flight path with respect to alpha and chi_1, lb/ft^1.5/rad/slug^0.5.
-        pub d2_path_force_d_alpha_d_chi_1: R,
-        /// Derivative of force along the flight path with respect to alpha and chi_2, lb/ft^1.5/rad/slug^0.5.
-        pub d2_path_force_d_alpha_d_chi_2: R,
-        /// Derivative of force along the flight path with respect to alpha and chi_3, lb/ft^1.5/rad/slug^0.5.
-        pub d2_path_force_d_alpha_d_chi_3: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// velocity and altitude, 1/ft^2.
-        pub d2_gravity_turn_d_velocity_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and
-        /// altitude, 1/ft^2.
-        pub d2_turn_factor_d_velocity_d_altitude: R,
-        /// Derivative of lift coefficient with respect to velocity and altitude, s/ft^2.
-        pub d2_c_l_d_velocity_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to velocity and altitude,
-        /// s/ft^2.
-        pub d2_normal_coefficient_d_velocity_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to velocity and altitude,
-        /// rad/ft^2.
-        pub d2_force_turn_d_velocity_d_altitude: R,
-        /// Derivative of lift coefficient with respect to velocity and alpha, s/ft/rad.
-        pub d2_c_l_d_velocity_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to velocity and alpha,
-        /// s/ft/rad.
-        pub d2_normal_coefficient_d_velocity_d_alpha: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// altitude and altitude, 1/s/ft^2.
-        pub d2_gravity_turn_d_altitude_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and
-        /// altitude, 1/s/ft^2.
-        pub d2_turn_factor_d_altitude_d_altitude: R,
-        /// Derivative of lift coefficient with respect to altitude and altitude, 1/ft^2.
-        pub d2_c_l_d_altitude_d_altitude: R,
-        /// Derivative of coefficient of the force across the flight path with respect to altitude and altitude,
-        /// 1/ft^2.
-        pub d2_normal_coefficient_d_altitude_d_altitude: R,
-        /// Derivative of turn rate by the force across the flight path with respect to altitude and altitude,
-        /// rad/s/ft^2.
-        pub d2_force_turn_d_altitude_d_altitude: R,
-        /// Derivative of lift coefficient with respect to altitude and alpha, 1/ft/rad.
-        pub d2_c_l_d_altitude_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to altitude and alpha,
-        /// 1/ft/rad.
-        pub d2_normal_coefficient_d_altitude_d_alpha: R,
-        /// Derivative of cos of the flight-path angle with respect to gamma and gamma, 1/rad^2.
-        pub d2_cos_gamma_d_gamma_d_gamma: R,
-        /// Derivative of lift coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_l_d_alpha_d_alpha: R,
-        /// Derivative of coefficient of the force across the flight path with respect to alpha and alpha, 1/rad^2.
-        pub d2_normal_coefficient_d_alpha_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to velocity and alpha, s/ft/rad.
-        pub d2_c_m_d_velocity_d_alpha: R,
-        /// Derivative of pitching moment with respect to velocity and alpha, lb*s/ft/rad.
-        pub d2_pitching_moment_d_velocity_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to altitude and alpha, 1/ft/rad.
-        pub d2_c_m_d_altitude_d_alpha: R,
-        /// Derivative of pitching moment with respect to altitude and alpha, lb/ft/rad.
-        pub d2_pitching_moment_d_altitude_d_alpha: R,
-        /// Derivative of pitching-moment coefficient with respect to alpha and alpha, 1/rad^2.
-        pub d2_c_m_d_alpha_d_alpha: R,
-        /// Derivative of pitching moment with respect to alpha and alpha, lb/rad^2.
-        pub d2_pitching_moment_d_alpha_d_alpha: R,
+        d2_reference_force_d_velocity_d_altitude, d2_eta_static_1_d_velocity_d_altitude,
+        d2_eta_static_2_d_velocity_d_altitude, d2_eta_static_3_d_velocity_d_altitude, d2_thrust_d_velocity_d_altitude,
+        d2_velocity_rate_d_velocity_d_alpha, d2_gravity_d_altitude_d_altitude, density_ratio_over_h_s,
+        d2_reference_force_d_altitude_d_altitude, d2_eta_static_1_d_altitude_d_altitude,
+        d2_eta_static_2_d_altitude_d_altitude, d2_eta_static_3_d_altitude_d_altitude, d2_thrust_d_altitude_d_altitude,
+        d2_velocity_rate_d_altitude_d_gamma, d2_velocity_rate_d_altitude_d_alpha, d2_velocity_rate_d_gamma_d_gamma,
+        d2_velocity_rate_d_alpha_d_alpha, d2_velocity_rate_d_alpha_d_chi_1, d2_velocity_rate_d_alpha_d_chi_2,
+        d2_velocity_rate_d_alpha_d_chi_3, d2_altitude_rate_d_gamma_d_gamma, d2_gamma_rate_d_velocity_d_altitude,
+        d2_gamma_rate_d_velocity_d_gamma, d2_force_turn_d_velocity_d_alpha, d2_gamma_rate_d_altitude_d_altitude,
+        d2_gamma_rate_d_altitude_d_gamma, d2_force_turn_d_altitude_d_alpha, d2_gamma_rate_d_gamma_d_gamma,
+        d2_force_turn_d_alpha_d_alpha, d2_force_turn_d_alpha_d_chi_1, d2_force_turn_d_alpha_d_chi_2,
+        d2_force_turn_d_alpha_d_chi_3, d2_pitch_acceleration_d_velocity_d_alpha,
+        d2_pitch_acceleration_d_altitude_d_alpha, d2_pitch_acceleration_d_alpha_d_alpha,
+        d2_dynamic_pressure_d_velocity_d_altitude, d2_generalized_force_1_d_velocity_d_altitude,
+        d2_generalized_force_2_d_velocity_d_altitude, d2_generalized_force_3_d_velocity_d_altitude,
+        d2_c_t_d_velocity_d_altitude, d2_generalized_force_1_d_velocity_d_alpha, d2_eta_static_1_d_velocity_d_alpha,
+        d2_generalized_force_2_d_velocity_d_alpha, d2_eta_static_2_d_velocity_d_alpha,
+        d2_generalized_force_3_d_velocity_d_alpha, d2_eta_static_3_d_velocity_d_alpha, d2_c_t_d_velocity_d_alpha,
+        d2_thrust_d_velocity_d_alpha, d2_c_d_d_velocity_d_alpha, d2_drag_d_velocity_d_alpha,
+        d2_path_force_d_velocity_d_alpha, radius_ratio_3, d2_radius_ratio_d_altitude_d_altitude,
+        power_2_of_d_radius_ratio_d_altitude, d2_density_ratio_d_altitude_d_altitude, d2_density_d_altitude_d_altitude,
+        d2_dynamic_pressure_d_altitude_d_altitude, d2_generalized_force_1_d_altitude_d_altitude,
+        d2_generalized_force_2_d_altitude_d_altitude, d2_generalized_force_3_d_altitude_d_altitude,
+        d2_c_t_d_altitude_d_altitude, d2_generalized_force_1_d_altitude_d_alpha, d2_eta_static_1_d_altitude_d_alpha,
+        d2_generalized_force_2_d_altitude_d_alpha, d2_eta_static_2_d_altitude_d_alpha,
+        d2_generalized_force_3_d_altitude_d_alpha, d2_eta_static_3_d_altitude_d_alpha, d2_c_t_d_altitude_d_alpha,
+        d2_thrust_d_altitude_d_alpha, d2_c_d_d_altitude_d_alpha, d2_drag_d_altitude_d_alpha,
+        d2_path_force_d_altitude_d_alpha, d2_cos_alpha_d_alpha_d_alpha, d2_generalized_force_1_d_alpha_d_alpha,
+        d2_eta_static_1_d_alpha_d_alpha, d2_generalized_force_2_d_alpha_d_alpha, d2_eta_static_2_d_alpha_d_alpha,
+        d2_generalized_force_3_d_alpha_d_alpha, d2_eta_static_3_d_alpha_d_alpha, d2_c_t_phi_d_alpha_d_alpha,
+        d2_c_t_d_alpha_d_alpha, d2_thrust_d_alpha_d_alpha, d2_c_d_d_alpha_d_alpha, d2_drag_d_alpha_d_alpha,
+        d2_path_force_d_alpha_d_alpha, d2_path_force_d_alpha_d_chi_1, d2_path_force_d_alpha_d_chi_2,
+        d2_path_force_d_alpha_d_chi_3, d2_gravity_turn_d_velocity_d_altitude, d2_turn_factor_d_velocity_d_altitude,
+        d2_c_l_d_velocity_d_altitude, d2_normal_coefficient_d_velocity_d_altitude, d2_force_turn_d_velocity_d_altitude,
+        d2_c_l_d_velocity_d_alpha, d2_normal_coefficient_d_velocity_d_alpha, d2_gravity_turn_d_altitude_d_altitude,
+        d2_turn_factor_d_altitude_d_altitude, d2_c_l_d_altitude_d_altitude, d2_normal_coefficient_d_altitude_d_altitude,
+        d2_force_turn_d_altitude_d_altitude, d2_c_l_d_altitude_d_alpha, d2_normal_coefficient_d_altitude_d_alpha,
+        d2_cos_gamma_d_gamma_d_gamma, d2_c_l_d_alpha_d_alpha, d2_normal_coefficient_d_alpha_d_alpha,
+        d2_c_m_d_velocity_d_alpha, d2_pitching_moment_d_velocity_d_alpha, d2_c_m_d_altitude_d_alpha,
+        d2_pitching_moment_d_altitude_d_alpha, d2_c_m_d_alpha_d_alpha, d2_pitching_moment_d_alpha_d_alpha,
     }
 }
 
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
 fn curvatures_part_1<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
     h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    h.d2_reference_force_d_velocity_d_altitude = p.s
-        * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    h.d2_reference_force_d_velocity_d_altitude = p.s * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     h.d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    h.d2_eta_static_1_d_velocity_d_altitude = h
-        .d2_generalized_force_1_d_velocity_d_altitude * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
+    h.d2_eta_static_1_d_velocity_d_altitude = h.d2_generalized_force_1_d_velocity_d_altitude
+        * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
     h.d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    h.d2_eta_static_2_d_velocity_d_altitude = h
-        .d2_generalized_force_2_d_velocity_d_altitude * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
+    h.d2_eta_static_2_d_velocity_d_altitude = h.d2_generalized_force_2_d_velocity_d_altitude
+        * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
     h.d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    h.d2_eta_static_3_d_velocity_d_altitude = h
-        .d2_generalized_force_3_d_velocity_d_altitude * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
+    h.d2_eta_static_3_d_velocity_d_altitude = h.d2_generalized_force_3_d_velocity_d_altitude
+        * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
     h.d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
@@ -941,48 +574,41 @@ fn curvatures_part_1<R: Real>(
     // Derivatives with respect to altitude
     h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
-    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
+    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
     h.d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    h.d2_density_d_altitude_d_altitude = p.rho_0
-        * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    h.d2_density_d_altitude_d_altitude = p.rho_0 * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * h.d2_density_d_altitude_d_altitude; // lb/ft^4
-    h.d2_reference_force_d_altitude_d_altitude = p.s
-        * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    h.d2_reference_force_d_altitude_d_altitude = p.s * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
     h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    h.d2_eta_static_1_d_altitude_d_altitude = h
-        .d2_generalized_force_1_d_altitude_d_altitude * p.inv_omega_1_2; // slug^0.5/ft^1.5
+    h.d2_eta_static_1_d_altitude_d_altitude = h.d2_generalized_force_1_d_altitude_d_altitude
+        * p.inv_omega_1_2; // slug^0.5/ft^1.5
 }
 
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
 fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    h: &mut Curvatures<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
     h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    h.d2_eta_static_2_d_altitude_d_altitude = h
-        .d2_generalized_force_2_d_altitude_d_altitude * p.inv_omega_2_2; // slug^0.5/ft^1.5
+    h.d2_eta_static_2_d_altitude_d_altitude = h.d2_generalized_force_2_d_altitude_d_altitude
+        * p.inv_omega_2_2; // slug^0.5/ft^1.5
     h.d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    h.d2_eta_static_3_d_altitude_d_altitude = h
-        .d2_generalized_force_3_d_altitude_d_altitude * p.inv_omega_3_2; // slug^0.5/ft^1.5
+    h.d2_eta_static_3_d_altitude_d_altitude = h.d2_generalized_force_3_d_altitude_d_altitude
+        * p.inv_omega_3_2; // slug^0.5/ft^1.5
     h.d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    h.d2_thrust_d_altitude_d_altitude = R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
+    h.d2_thrust_d_altitude_d_altitude =
+        R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
         + i.c_t * h.d2_reference_force_d_altitude_d_altitude
         + i.reference_force * h.d2_c_t_d_altitude_d_altitude; // lb/ft^3
 
@@ -1023,16 +649,15 @@ fn curvatures_part_2<R: Real>(
     // Derivatives with respect to alpha
     h.d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    h.d2_eta_static_1_d_alpha_d_alpha = h.d2_generalized_force_1_d_alpha_d_alpha
-        * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad^2
+    // ft^0.5*slug^0.5/rad^2
+    h.d2_eta_static_1_d_alpha_d_alpha = h.d2_generalized_force_1_d_alpha_d_alpha * p.inv_omega_1_2;
     h.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    h.d2_eta_static_2_d_alpha_d_alpha = h.d2_generalized_force_2_d_alpha_d_alpha
-        * p.inv_omega_2_2; // ft^0.5*slug^0.5/rad^2
+    // ft^0.5*slug^0.5/rad^2
+    h.d2_eta_static_2_d_alpha_d_alpha = h.d2_generalized_force_2_d_alpha_d_alpha * p.inv_omega_2_2;
     h.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
-    h.d2_eta_static_3_d_alpha_d_alpha = h.d2_generalized_force_3_d_alpha_d_alpha
-        * p.inv_omega_3_2; // ft^0.5*slug^0.5/rad^2
-    h.d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha
-        + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
+    // ft^0.5*slug^0.5/rad^2
+    h.d2_eta_static_3_d_alpha_d_alpha = h.d2_generalized_force_3_d_alpha_d_alpha * p.inv_omega_3_2;
+    h.d2_c_t_phi_d_alpha_d_alpha = p.six_c_t_phi_alpha_3 * x.alpha + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
     h.d2_c_t_d_alpha_d_alpha = p.six_c_t_alpha_3 * x.alpha
         + R::TWO * p.c_t_alpha_2
         + p.c_t_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
@@ -1049,11 +674,7 @@ fn curvatures_part_2<R: Real>(
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
 fn curvatures_part_3<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to alpha
     h.d2_drag_d_alpha_d_alpha = i.reference_force * h.d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
@@ -1064,18 +685,15 @@ fn curvatures_part_3<R: Real>(
     h.d2_velocity_rate_d_alpha_d_alpha = h.d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    h.d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
+    h.d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
     h.d2_velocity_rate_d_alpha_d_chi_1 = h.d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    h.d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
+    h.d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
     h.d2_velocity_rate_d_alpha_d_chi_2 = h.d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    h.d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
+    h.d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
     h.d2_velocity_rate_d_alpha_d_chi_3 = h.d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to gamma
@@ -1088,9 +706,10 @@ fn curvatures_part_3<R: Real>(
     h.d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    h.d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha
-        * h.d2_c_t_d_velocity_d_altitude + h.d2_c_l_d_velocity_d_altitude; // s/ft^2
-    h.d2_force_turn_d_velocity_d_altitude = s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
+    h.d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha * h.d2_c_t_d_velocity_d_altitude
+        + h.d2_c_l_d_velocity_d_altitude; // s/ft^2
+    h.d2_force_turn_d_velocity_d_altitude =
+        s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
         + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
         + i.normal_coefficient * h.d2_turn_factor_d_velocity_d_altitude
         + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
@@ -1098,8 +717,7 @@ fn curvatures_part_3<R: Real>(
         - i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
 
     // Derivatives with respect to gamma
-    h.d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
+    h.d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
 
     // Derivatives with respect to alpha
     h.d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
@@ -1108,41 +726,34 @@ fn curvatures_part_3<R: Real>(
     h.d2_normal_coefficient_d_velocity_d_alpha = s.d_c_t_d_velocity * i.cos_alpha
         + i.sin_alpha * h.d2_c_t_d_velocity_d_alpha
         + h.d2_c_l_d_velocity_d_alpha; // s/ft/rad
-    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha
+    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_alpha
         + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
 
     // Derivatives with respect to altitude
-    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
+    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
     h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
     h.d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha
-        * h.d2_c_t_d_altitude_d_altitude + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
-    h.d2_force_turn_d_altitude_d_altitude = R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
+    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha * h.d2_c_t_d_altitude_d_altitude
+        + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
+    h.d2_force_turn_d_altitude_d_altitude =
+        R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
         + i.normal_coefficient * h.d2_turn_factor_d_altitude_d_altitude
         + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
 }
 
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
-fn curvatures_part_4<R: Real>(
-    h: &mut Curvatures<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
+fn curvatures_part_4<R: Real>(h: &mut Curvatures<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     // Derivatives with respect to altitude
     h.d2_gamma_rate_d_altitude_d_altitude = h.d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to gamma
-    h.d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    h.d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
 
     // Derivatives with respect to alpha
     h.d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
@@ -1151,8 +762,7 @@ fn curvatures_part_4<R: Real>(
     h.d2_normal_coefficient_d_altitude_d_alpha = s.d_c_t_d_altitude * i.cos_alpha
         + i.sin_alpha * h.d2_c_t_d_altitude_d_alpha
         + h.d2_c_l_d_altitude_d_alpha; // 1/ft/rad
-    h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_alpha
+    h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_alpha
         + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to gamma
@@ -1167,8 +777,7 @@ fn curvatures_part_4<R: Real>(
         + i.sin_alpha * h.d2_c_t_d_alpha_d_alpha
         + i.c_t * s.d_cos_alpha_d_alpha
         + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor
-        * h.d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor * h.d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
 
     // Derivatives with respect to chi_1
     h.d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
@@ -1204,18 +813,13 @@ fn curvatures_part_4<R: Real>(
         + p.c_m_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
     h.d2_pitching_moment_d_alpha_d_alpha = p.z_t * h.d2_thrust_d_alpha_d_alpha
         + p.c_bar * i.reference_force * h.d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    h.d2_pitch_acceleration_d_alpha_d_alpha = h.d2_pitching_moment_d_alpha_d_alpha
-        * p.inv_i_yy; // 1/s^2/rad
+    h.d2_pitch_acceleration_d_alpha_d_alpha = h.d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
 }
 
 /// Computes [`Curvatures`].
 #[inline(always)]
 pub fn curvatures<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> Curvatures<R> {
     let mut h = Curvatures::splat(R::ZERO);
     curvatures_part_1(&mut h, x, p, i, s);
@@ -1226,68 +830,26 @@ pub fn curvatures<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
+    /// a description is what its name says: its formula and unit stand in [`sensitivities`].
     pub struct Sensitivities<R> {
-        /// Derivative of thrust with respect to rho_0, lb*ft^2/slug.
-        pub d_thrust_d_rho_0: R,
-        /// Derivative of turn rate by the force across the flight path with respect to rho_0, rad*ft^3/s/slug.
-        pub d_force_turn_d_rho_0: R,
-        /// Derivative of dynamic pressure times reference area with respect to h_0, lb/ft^2.
-        pub d_reference_force_d_h_0: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to h_0, slug^0.5/ft^0.5.
-        pub d_eta_static_1_d_h_0: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to h_0, slug^0.5/ft^0.5.
-        pub d_eta_static_2_d_h_0: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to h_0, slug^0.5/ft^0.5.
-        pub d_eta_static_3_d_h_0: R,
-        /// Derivative of thrust with respect to h_0, lb/ft^2.
-        pub d_thrust_d_h_0: R,
-        /// Derivative of turn rate by the force across the flight path with respect to h_0, rad/s/ft.
-        pub d_force_turn_d_h_0: R,
-        /// Derivative of dynamic pressure times reference area with respect to h_s, lb/ft^2.
-        pub d_reference_force_d_h_s: R,
-        /// Derivative of static flexible coordinate of mode 1 with respect to h_s, slug^0.5/ft^0.5.
-        pub d_eta_static_1_d_h_s: R,
-        /// Derivative of static flexible coordinate of mode 2 with respect to h_s, slug^0.5/ft^0.5.
-        pub d_eta_static_2_d_h_s: R,
-        /// Derivative of static flexible coordinate of mode 3 with respect to h_s, slug^0.5/ft^0.5.
-        pub d_eta_static_3_d_h_s: R,
-        /// Derivative of thrust with respect to h_s, lb/ft^2.
-        pub d_thrust_d_h_s: R,
-        /// Derivative of turn rate by the force across the flight path with respect to h_s, rad/s/ft.
-        pub d_force_turn_d_h_s: R,
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
-        pub slope_of_radius_ratio_in_earth_curvature: R,
-        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
-        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
-        /// Derivative of rate of the flight-path angle with respect to r_e, rad/s/ft.
-        pub d_gamma_rate_d_r_e: R,
-        /// `c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e + c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e +
-        /// c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e`.
-        pub sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e: R,
-        /// `c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e`.
-        pub c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e: R,
-        /// `c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e`.
-        pub c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e: R,
-        /// `c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e`.
-        pub c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e: R,
-        /// `q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e + q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e +
-        /// q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e`.
-        pub sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e: R,
-        /// `i.reference_force * i.reference_force`.
-        pub reference_force_2: R,
+        slope_of_radius_ratio_in_earth_curvature,
+        d_thrust_d_rho_0, d_force_turn_d_rho_0, d_reference_force_d_h_0, d_eta_static_1_d_h_0, d_eta_static_2_d_h_0,
+        d_eta_static_3_d_h_0, d_thrust_d_h_0, d_force_turn_d_h_0, d_reference_force_d_h_s, d_eta_static_1_d_h_s,
+        d_eta_static_2_d_h_s, d_eta_static_3_d_h_s, d_thrust_d_h_s, d_force_turn_d_h_s,
+        two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity, d_gamma_rate_d_r_e,
+        sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e, c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e,
+        c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e, c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e,
+        sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e, reference_force_2,
     }
 }
 
 /// Computes [`Sensitivities`].
 #[inline(always)]
 pub fn sensitivities<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    h: &Curvatures<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, h: &Curvatures<R>,
 ) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
@@ -1303,8 +865,8 @@ pub fn sensitivities<R: Real>(
             + p.half_c_l_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
             + p.half_c_l_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
     let d_normal_coefficient_d_rho_0 = i.sin_alpha * d_c_t_d_rho_0 + d_c_l_d_rho_0; // ft^3/slug
-    q.d_force_turn_d_rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity
-        * i.density_ratio + i.turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
+    q.d_force_turn_d_rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity * i.density_ratio
+        + i.turn_factor * d_normal_coefficient_d_rho_0; // rad*ft^3/s/slug
     let d_density_d_h_0 = p.rho_0 * h.density_ratio_over_h_s; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
     q.d_reference_force_d_h_0 = p.s * d_dynamic_pressure_d_h_0; // lb/ft^2
@@ -1317,8 +879,7 @@ pub fn sensitivities<R: Real>(
     let d_c_t_d_h_0 = p.c_t_eta_1 * q.d_eta_static_1_d_h_0
         + p.c_t_eta_2 * q.d_eta_static_2_d_h_0
         + p.c_t_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
-    q.d_thrust_d_h_0 = i.c_t * q.d_reference_force_d_h_0
-        + i.reference_force * d_c_t_d_h_0; // lb/ft^2
+    q.d_thrust_d_h_0 = i.c_t * q.d_reference_force_d_h_0 + i.reference_force * d_c_t_d_h_0; // lb/ft^2
     let d_turn_factor_d_h_0 = p.half_s_over_m * x.velocity * d_density_d_h_0; // 1/s/ft
     let d_c_l_d_h_0 = p.c_l_eta_1 * q.d_eta_static_1_d_h_0
         + p.c_l_eta_2 * q.d_eta_static_2_d_h_0
@@ -1339,8 +900,7 @@ pub fn sensitivities<R: Real>(
     let d_c_t_d_h_s = p.c_t_eta_1 * q.d_eta_static_1_d_h_s
         + p.c_t_eta_2 * q.d_eta_static_2_d_h_s
         + p.c_t_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
-    q.d_thrust_d_h_s = i.c_t * q.d_reference_force_d_h_s
-        + i.reference_force * d_c_t_d_h_s; // lb/ft^2
+    q.d_thrust_d_h_s = i.c_t * q.d_reference_force_d_h_s + i.reference_force * d_c_t_d_h_s; // lb/ft^2
     let d_turn_factor_d_h_s = p.half_s_over_m * x.velocity * d_density_d_h_s; // 1/s/ft
     let d_c_l_d_h_s = p.c_l_eta_1 * q.d_eta_static_1_d_h_s
         + p.c_l_eta_2 * q.d_eta_static_2_d_h_s
@@ -1363,12 +923,9 @@ pub fn sensitivities<R: Real>(
     q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e = p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
         + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
         + p.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
-    q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p
-        .c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e;
-    q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e = p
-        .c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e;
-    q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e = p
-        .c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
+    q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e = p.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e;
+    q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e = p.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e;
+    q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e = p.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e;
     q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e = q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
         + q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
         + q.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2_delta_e;

@@ -22,10 +22,7 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.c_d_eta_3 * i.eta_static_3;
     let f_velocity_eta = i.reference_force * p.inv_m
         * (i.cos_alpha * c_t_of_f_eta_velocity - c_d_of_f_eta_velocity); // ft/s^2
-    let c_t_of_f_velocity = p.c_t_0
-        + p.c_t_alpha_3 * i.alpha_3
-        + p.c_t_alpha_2 * i.alpha_2
-        + p.c_t_alpha * x.alpha;
+    let c_t_of_f_velocity = p.c_t_0 + p.c_t_alpha_3 * i.alpha_3 + p.c_t_alpha_2 * i.alpha_2 + p.c_t_alpha * x.alpha;
     let c_d_of_f_velocity = p.c_d_0
         + p.c_d_alpha_2 * i.alpha_2
         + p.c_d_alpha * x.alpha
@@ -46,8 +43,6 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 pub fn g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-
-    // Strict-feedback form, (28)
     i.cos_alpha * s.d_thrust_d_phi * p.inv_m
 }
 
@@ -99,27 +94,18 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
 
     // Strict-feedback form, (30)
-    let c_t_of_f_eta_gamma = p.c_t_eta_1 * i.eta_static_1
-        + p.c_t_eta_2 * i.eta_static_2
-        + p.c_t_eta_3 * i.eta_static_3;
-    let c_l_of_f_eta_gamma = p.c_l_eta_1 * i.eta_static_1
-        + p.c_l_eta_2 * i.eta_static_2
-        + p.c_l_eta_3 * i.eta_static_3;
-    let f_gamma_eta = i.turn_factor
-        * (i.sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma); // rad/s
+    let c_t_of_f_eta_gamma = p.c_t_eta_1 * i.eta_static_1 + p.c_t_eta_2 * i.eta_static_2 + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_gamma = p.c_l_eta_1 * i.eta_static_1 + p.c_l_eta_2 * i.eta_static_2 + p.c_l_eta_3 * i.eta_static_3;
+    let f_gamma_eta = i.turn_factor * (i.sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma); // rad/s
     let c_t_of_f_gamma = p.c_t_0
         + p.c_t_phi_alpha_3 * u.phi * i.alpha_3
         + p.c_t_phi_alpha_2 * u.phi * i.alpha_2
         + p.c_t_phi * u.phi
         + p.c_t_alpha_3 * i.alpha_3
         + p.c_t_alpha_2 * i.alpha_2;
-    let c_l_of_f_gamma = p.c_l_0
-        + p.elevator_lift * u.delta_e
-        + p.c_l_delta_c * i.canard_commanded;
+    let c_l_of_f_gamma = p.c_l_0 + p.elevator_lift * u.delta_e + p.c_l_delta_c * i.canard_commanded;
 
-    i.turn_factor * (i.sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma)
-        - i.gravity_turn * i.cos_gamma
-        + f_gamma_eta
+    i.turn_factor * (i.sin_alpha * c_t_of_f_gamma + c_l_of_f_gamma) - i.gravity_turn * i.cos_gamma + f_gamma_eta
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
@@ -163,12 +149,8 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
 
     // Strict-feedback form, (30)
-    let c_t_of_f_eta_gamma = p.c_t_eta_1 * i.eta_static_1
-        + p.c_t_eta_2 * i.eta_static_2
-        + p.c_t_eta_3 * i.eta_static_3;
-    let c_l_of_f_eta_gamma = p.c_l_eta_1 * i.eta_static_1
-        + p.c_l_eta_2 * i.eta_static_2
-        + p.c_l_eta_3 * i.eta_static_3;
+    let c_t_of_f_eta_gamma = p.c_t_eta_1 * i.eta_static_1 + p.c_t_eta_2 * i.eta_static_2 + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_gamma = p.c_l_eta_1 * i.eta_static_1 + p.c_l_eta_2 * i.eta_static_2 + p.c_l_eta_3 * i.eta_static_3;
 
     i.turn_factor * (i.sin_alpha * c_t_of_f_eta_gamma + c_l_of_f_eta_gamma)
 }
@@ -181,14 +163,10 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
 
     // Strict-feedback form, (32)
-    let c_t_of_f_eta_alpha = p.c_t_eta_1 * i.eta_static_1
-        + p.c_t_eta_2 * i.eta_static_2
-        + p.c_t_eta_3 * i.eta_static_3;
-    let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1
-        + p.c_l_eta_2 * i.eta_static_2
-        + p.c_l_eta_3 * i.eta_static_3;
-    let sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor = i
-        .turn_factor * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let c_t_of_f_eta_alpha = p.c_t_eta_1 * i.eta_static_1 + p.c_t_eta_2 * i.eta_static_2 + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1 + p.c_l_eta_2 * i.eta_static_2 + p.c_l_eta_3 * i.eta_static_3;
+    let sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor = i.turn_factor
+        * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
     let f_alpha_eta = -sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor; // rad/s
     let c_t_of_f_alpha = p.c_t_0
         + p.c_t_phi_alpha_3 * u.phi * i.alpha_3
@@ -203,9 +181,7 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
         + p.elevator_lift * u.delta_e
         + p.c_l_delta_c * i.canard_commanded;
 
-    i.gravity_turn * i.cos_gamma
-        - i.turn_factor * (i.sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha)
-        + f_alpha_eta
+    i.gravity_turn * i.cos_gamma - i.turn_factor * (i.sin_alpha * c_t_of_f_alpha + c_l_of_f_alpha) + f_alpha_eta
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
@@ -244,14 +220,10 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
 
     // Strict-feedback form, (32)
-    let c_t_of_f_eta_alpha = p.c_t_eta_1 * i.eta_static_1
-        + p.c_t_eta_2 * i.eta_static_2
-        + p.c_t_eta_3 * i.eta_static_3;
-    let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1
-        + p.c_l_eta_2 * i.eta_static_2
-        + p.c_l_eta_3 * i.eta_static_3;
-    let sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor = i
-        .turn_factor * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
+    let c_t_of_f_eta_alpha = p.c_t_eta_1 * i.eta_static_1 + p.c_t_eta_2 * i.eta_static_2 + p.c_t_eta_3 * i.eta_static_3;
+    let c_l_of_f_eta_alpha = p.c_l_eta_1 * i.eta_static_1 + p.c_l_eta_2 * i.eta_static_2 + p.c_l_eta_3 * i.eta_static_3;
+    let sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor = i.turn_factor
+        * (i.sin_alpha * c_t_of_f_eta_alpha + c_l_of_f_eta_alpha);
 
     -sin_alpha_c_t_of_f_eta_alpha_plus_c_l_of_f_eta_alpha_times_turn_factor
 }
@@ -296,8 +268,6 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 #[inline(always)]
 pub fn g_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
-
-    // Strict-feedback form, (34)
     p.c_bar_c_m_of_g_pitch_rate_over_i_yy * i.reference_force
 }
 

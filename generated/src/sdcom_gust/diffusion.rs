@@ -7,14 +7,12 @@ use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Diffusion`].
-    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
-        alpha_by_w_q: alpha.w_q,
-        chi_1_by_xi_1: chi_1.xi_1,
-        chi_2_by_xi_1: chi_2.xi_1,
-        chi_2_by_xi_2: chi_2.xi_2,
-        chi_3_by_xi_1: chi_3.xi_1,
-        chi_3_by_xi_3: chi_3.xi_3,
-        alpha_gust_by_w_gust: alpha_gust.w_gust,
+    pub struct DiffusionEntries in diffusion_entries, DIFFUSION_PATTERN: State<Noise> {
+        alpha { w_q }
+        chi_1 { xi_1 }
+        chi_2 { xi_1, xi_2 }
+        chi_3 { xi_1, xi_3 }
+        alpha_gust { w_gust }
     }
 }
 
@@ -25,20 +23,16 @@ ahv_core::entries! {
 ///
 /// No operations.
 #[inline(always)]
-pub fn diffusion_values<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-) -> DiffusionEntries<R> {
-    DiffusionEntries {
-        alpha_by_w_q: p.w_q,
-        chi_1_by_xi_1: p.chi_diffusion_1,
-        chi_2_by_xi_1: p.chi_diffusion_2_shared_noise,
-        chi_2_by_xi_2: p.chi_diffusion_2_own_noise,
-        chi_3_by_xi_1: p.chi_diffusion_3_shared_noise,
-        chi_3_by_xi_3: p.chi_diffusion_3_own_noise,
-        alpha_gust_by_w_gust: p.gust_rms_sqrt_two_over_gust_time,
-    }
+pub fn diffusion_values<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
+    let mut diffusion = DiffusionEntries::splat(R::ZERO);
+    diffusion.alpha.w_q = p.w_q;
+    diffusion.chi_1.xi_1 = p.chi_diffusion_1;
+    diffusion.chi_2.xi_1 = p.chi_diffusion_2_shared_noise;
+    diffusion.chi_2.xi_2 = p.chi_diffusion_2_own_noise;
+    diffusion.chi_3.xi_1 = p.chi_diffusion_3_shared_noise;
+    diffusion.chi_3.xi_3 = p.chi_diffusion_3_own_noise;
+    diffusion.alpha_gust.w_gust = p.gust_rms_sqrt_two_over_gust_time;
+    diffusion
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the gust is an
@@ -52,11 +46,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 ///
 /// 150 operations: 58 additions, 87 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn drift_and_diffusion<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (State<R>, Diffusion<R>) {
+pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
     let drift = drift_from(x, u, p, &i);
     let diffusion = diffusion_values(x, u, p);
@@ -67,12 +57,7 @@ pub fn drift_and_diffusion<R: Real>(
 ///
 /// 10 operations: 2 additions, 8 multiplications.
 #[inline(always)]
-pub fn noise_increment<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-) -> State<R> {
+pub fn noise_increment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
 
     State {
@@ -94,10 +79,7 @@ pub fn noise_increment<R: Real>(
 /// 160 operations: 60 additions, 95 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
     let i = intermediates(x, u, p);
     let drift = drift_from(x, u, p, &i);

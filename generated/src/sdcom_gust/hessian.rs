@@ -2,110 +2,39 @@
 
 //! Functions of SDCOM_GUST. Units are foot, slug, second and radian.
 
-use super::{
-    Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures,
-    intermediates, slopes,
-};
-
+use super::{Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Hessian`].
-    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
-        velocity_by_velocity_velocity: velocity.velocity.velocity,
-        velocity_by_altitude_velocity: velocity.altitude.velocity,
-        velocity_by_altitude_altitude: velocity.altitude.altitude,
-        velocity_by_gamma_altitude: velocity.gamma.altitude,
-        velocity_by_gamma_gamma: velocity.gamma.gamma,
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        velocity_by_alpha_altitude: velocity.alpha.altitude,
-        velocity_by_alpha_alpha: velocity.alpha.alpha,
-        velocity_by_chi_1_velocity: velocity.chi_1.velocity,
-        velocity_by_chi_1_altitude: velocity.chi_1.altitude,
-        velocity_by_chi_1_alpha: velocity.chi_1.alpha,
-        velocity_by_chi_2_velocity: velocity.chi_2.velocity,
-        velocity_by_chi_2_altitude: velocity.chi_2.altitude,
-        velocity_by_chi_2_alpha: velocity.chi_2.alpha,
-        velocity_by_chi_3_velocity: velocity.chi_3.velocity,
-        velocity_by_chi_3_altitude: velocity.chi_3.altitude,
-        velocity_by_chi_3_alpha: velocity.chi_3.alpha,
-        velocity_by_alpha_gust_velocity: velocity.alpha_gust.velocity,
-        velocity_by_alpha_gust_altitude: velocity.alpha_gust.altitude,
-        velocity_by_alpha_gust_alpha: velocity.alpha_gust.alpha,
-        velocity_by_alpha_gust_alpha_gust: velocity.alpha_gust.alpha_gust,
-        altitude_by_gamma_velocity: altitude.gamma.velocity,
-        altitude_by_gamma_gamma: altitude.gamma.gamma,
-        gamma_by_velocity_velocity: gamma.velocity.velocity,
-        gamma_by_altitude_velocity: gamma.altitude.velocity,
-        gamma_by_altitude_altitude: gamma.altitude.altitude,
-        gamma_by_gamma_velocity: gamma.gamma.velocity,
-        gamma_by_gamma_altitude: gamma.gamma.altitude,
-        gamma_by_gamma_gamma: gamma.gamma.gamma,
-        gamma_by_alpha_velocity: gamma.alpha.velocity,
-        gamma_by_alpha_altitude: gamma.alpha.altitude,
-        gamma_by_alpha_alpha: gamma.alpha.alpha,
-        gamma_by_chi_1_velocity: gamma.chi_1.velocity,
-        gamma_by_chi_1_altitude: gamma.chi_1.altitude,
-        gamma_by_chi_1_alpha: gamma.chi_1.alpha,
-        gamma_by_chi_2_velocity: gamma.chi_2.velocity,
-        gamma_by_chi_2_altitude: gamma.chi_2.altitude,
-        gamma_by_chi_2_alpha: gamma.chi_2.alpha,
-        gamma_by_chi_3_velocity: gamma.chi_3.velocity,
-        gamma_by_chi_3_altitude: gamma.chi_3.altitude,
-        gamma_by_chi_3_alpha: gamma.chi_3.alpha,
-        gamma_by_alpha_gust_velocity: gamma.alpha_gust.velocity,
-        gamma_by_alpha_gust_altitude: gamma.alpha_gust.altitude,
-        gamma_by_alpha_gust_alpha: gamma.alpha_gust.alpha,
-        gamma_by_alpha_gust_alpha_gust: gamma.alpha_gust.alpha_gust,
-        alpha_by_velocity_velocity: alpha.velocity.velocity,
-        alpha_by_altitude_velocity: alpha.altitude.velocity,
-        alpha_by_altitude_altitude: alpha.altitude.altitude,
-        alpha_by_gamma_velocity: alpha.gamma.velocity,
-        alpha_by_gamma_altitude: alpha.gamma.altitude,
-        alpha_by_gamma_gamma: alpha.gamma.gamma,
-        alpha_by_alpha_velocity: alpha.alpha.velocity,
-        alpha_by_alpha_altitude: alpha.alpha.altitude,
-        alpha_by_alpha_alpha: alpha.alpha.alpha,
-        alpha_by_chi_1_velocity: alpha.chi_1.velocity,
-        alpha_by_chi_1_altitude: alpha.chi_1.altitude,
-        alpha_by_chi_1_alpha: alpha.chi_1.alpha,
-        alpha_by_chi_2_velocity: alpha.chi_2.velocity,
-        alpha_by_chi_2_altitude: alpha.chi_2.altitude,
-        alpha_by_chi_2_alpha: alpha.chi_2.alpha,
-        alpha_by_chi_3_velocity: alpha.chi_3.velocity,
-        alpha_by_chi_3_altitude: alpha.chi_3.altitude,
-        alpha_by_chi_3_alpha: alpha.chi_3.alpha,
-        alpha_by_alpha_gust_velocity: alpha.alpha_gust.velocity,
-        alpha_by_alpha_gust_altitude: alpha.alpha_gust.altitude,
-        alpha_by_alpha_gust_alpha: alpha.alpha_gust.alpha,
-        alpha_by_alpha_gust_alpha_gust: alpha.alpha_gust.alpha_gust,
-        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
-        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
-        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
-        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
-        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
-        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
-        pitch_rate_by_chi_1_velocity: pitch_rate.chi_1.velocity,
-        pitch_rate_by_chi_1_altitude: pitch_rate.chi_1.altitude,
-        pitch_rate_by_chi_2_velocity: pitch_rate.chi_2.velocity,
-        pitch_rate_by_chi_2_altitude: pitch_rate.chi_2.altitude,
-        pitch_rate_by_chi_3_velocity: pitch_rate.chi_3.velocity,
-        pitch_rate_by_chi_3_altitude: pitch_rate.chi_3.altitude,
-        pitch_rate_by_alpha_gust_velocity: pitch_rate.alpha_gust.velocity,
-        pitch_rate_by_alpha_gust_altitude: pitch_rate.alpha_gust.altitude,
-        pitch_rate_by_alpha_gust_alpha: pitch_rate.alpha_gust.alpha,
-        pitch_rate_by_alpha_gust_alpha_gust: pitch_rate.alpha_gust.alpha_gust,
+    pub struct HessianEntries in hessian_entries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity {
+            velocity { velocity } altitude { velocity, altitude } gamma { altitude, gamma }
+            alpha { velocity, altitude, alpha } chi_1 { velocity, altitude, alpha } chi_2 { velocity, altitude, alpha }
+            chi_3 { velocity, altitude, alpha } alpha_gust { velocity, altitude, alpha, alpha_gust }
+        }
+        altitude { gamma { velocity, gamma } }
+        gamma {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } chi_1 { velocity, altitude, alpha } chi_2 { velocity, altitude, alpha }
+            chi_3 { velocity, altitude, alpha } alpha_gust { velocity, altitude, alpha, alpha_gust }
+        }
+        alpha {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } chi_1 { velocity, altitude, alpha } chi_2 { velocity, altitude, alpha }
+            chi_3 { velocity, altitude, alpha } alpha_gust { velocity, altitude, alpha, alpha_gust }
+        }
+        pitch_rate {
+            velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha }
+            chi_1 { velocity, altitude } chi_2 { velocity, altitude } chi_3 { velocity, altitude }
+            alpha_gust { velocity, altitude, alpha, alpha_gust }
+        }
     }
 }
 
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-fn hessian_by_velocity<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
+fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_eta_static_1_d_velocity_d_velocity = d2_generalized_force_1_d_velocity_d_velocity
@@ -119,30 +48,30 @@ fn hessian_by_velocity<R: Real>(
     let d2_c_t_d_velocity_d_velocity = p.c_t_eta_1 * d2_eta_static_1_d_velocity_d_velocity
         + p.c_t_eta_2 * d2_eta_static_2_d_velocity_d_velocity
         + p.c_t_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
-    let d2_thrust_d_velocity_d_velocity = R::TWO * s.d_c_t_d_velocity * s.d_reference_force_d_velocity
+    let d2_thrust_d_velocity_d_velocity =
+        R::TWO * s.d_c_t_d_velocity * s.d_reference_force_d_velocity
         + i.c_t * p.s * i.density
         + i.reference_force * d2_c_t_d_velocity_d_velocity; // lb*s^2/ft^3
     let d2_c_d_d_velocity_d_velocity = p.c_d_eta_1 * d2_eta_static_1_d_velocity_d_velocity
         + p.c_d_eta_2 * d2_eta_static_2_d_velocity_d_velocity
         + p.c_d_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
-    let d2_drag_d_velocity_d_velocity = R::TWO * s.d_c_d_d_velocity * s.d_reference_force_d_velocity
+    let d2_drag_d_velocity_d_velocity =
+        R::TWO * s.d_c_d_d_velocity * s.d_reference_force_d_velocity
         + i.c_d * p.s * i.density
         + i.reference_force * d2_c_d_d_velocity_d_velocity; // lb*s^2/ft^3
-    let d2_path_force_d_velocity_d_velocity = i.cos_alpha
-        * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
-    let d2_velocity_rate_d_velocity_d_velocity = d2_path_force_d_velocity_d_velocity
-        * p.inv_m; // 1/ft
+    let d2_path_force_d_velocity_d_velocity = i.cos_alpha * d2_thrust_d_velocity_d_velocity
+        - d2_drag_d_velocity_d_velocity; // lb*s^2/ft^3
+    hessian.velocity.velocity.velocity = d2_path_force_d_velocity_d_velocity * p.inv_m; // 1/ft
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
     let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
     let d2_c_l_d_velocity_d_velocity = p.c_l_eta_1 * d2_eta_static_1_d_velocity_d_velocity
         + p.c_l_eta_2 * d2_eta_static_2_d_velocity_d_velocity
         + p.c_l_eta_3 * d2_eta_static_3_d_velocity_d_velocity; // s^2/ft^2
-    let d2_normal_coefficient_d_velocity_d_velocity = i.sin_alpha
-        * d2_c_t_d_velocity_d_velocity + d2_c_l_d_velocity_d_velocity; // s^2/ft^2
+    let d2_normal_coefficient_d_velocity_d_velocity = i.sin_alpha * d2_c_t_d_velocity_d_velocity
+        + d2_c_l_d_velocity_d_velocity; // s^2/ft^2
     let d2_force_turn_d_velocity_d_velocity = R::TWO * s.d_normal_coefficient_d_velocity
-        * s.d_turn_factor_d_velocity
-        + i.turn_factor * d2_normal_coefficient_d_velocity_d_velocity; // rad*s/ft^2
-    let d2_gamma_rate_d_velocity_d_velocity = d2_force_turn_d_velocity_d_velocity
+        * s.d_turn_factor_d_velocity + i.turn_factor * d2_normal_coefficient_d_velocity_d_velocity; // rad*s/ft^2
+    hessian.gamma.velocity.velocity = d2_force_turn_d_velocity_d_velocity
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
     let d2_c_m_d_velocity_d_velocity = p.c_m_eta_1 * d2_eta_static_1_d_velocity_d_velocity
         + p.c_m_eta_2 * d2_eta_static_2_d_velocity_d_velocity
@@ -151,23 +80,15 @@ fn hessian_by_velocity<R: Real>(
         * (R::TWO * s.d_c_m_d_velocity * s.d_reference_force_d_velocity
             + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
-    let d2_pitch_acceleration_d_velocity_d_velocity = d2_pitching_moment_d_velocity_d_velocity
-        * p.inv_i_yy; // rad/ft^2
+    hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
 
-    hessian.velocity_by_velocity_velocity = d2_velocity_rate_d_velocity_d_velocity;
-    hessian.gamma_by_velocity_velocity = d2_gamma_rate_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = -d2_gamma_rate_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitch_acceleration_d_velocity_d_velocity;
+    hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
 /// Entries of [`hessian_values`]: derivatives by altitude, gamma.
 #[inline(always)]
 fn hessian_by_altitude_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
@@ -178,31 +99,29 @@ fn hessian_by_altitude_gamma<R: Real>(
         + s.d_reference_force_d_velocity * s.d_c_d_d_altitude
         + i.c_d * h.d2_reference_force_d_velocity_d_altitude
         + i.reference_force * d2_c_d_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_path_force_d_velocity_d_altitude = i.cos_alpha
-        * h.d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
-    let d2_velocity_rate_d_velocity_d_altitude = d2_path_force_d_velocity_d_altitude
-        * p.inv_m; // 1/s/ft
+    let d2_path_force_d_velocity_d_altitude = i.cos_alpha * h.d2_thrust_d_velocity_d_altitude
+        - d2_drag_d_velocity_d_altitude; // lb*s/ft^3
+    hessian.velocity.altitude.velocity = d2_path_force_d_velocity_d_altitude * p.inv_m; // 1/s/ft
     let d2_c_d_d_altitude_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    let d2_drag_d_altitude_d_altitude = R::TWO * s.d_c_d_d_altitude * s.d_reference_force_d_altitude
+    let d2_drag_d_altitude_d_altitude =
+        R::TWO * s.d_c_d_d_altitude * s.d_reference_force_d_altitude
         + i.c_d * h.d2_reference_force_d_altitude_d_altitude
         + i.reference_force * d2_c_d_d_altitude_d_altitude; // lb/ft^3
-    let d2_path_force_d_altitude_d_altitude = i.cos_alpha
-        * h.d2_thrust_d_altitude_d_altitude - d2_drag_d_altitude_d_altitude; // lb/ft^3
-    let d2_velocity_rate_d_altitude_d_altitude = d2_path_force_d_altitude_d_altitude
-        * p.inv_m - i.sin_gamma * h.d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
+    let d2_path_force_d_altitude_d_altitude = i.cos_alpha * h.d2_thrust_d_altitude_d_altitude
+        - d2_drag_d_altitude_d_altitude; // lb/ft^3
+    hessian.velocity.altitude.altitude = d2_path_force_d_altitude_d_altitude * p.inv_m
+        - i.sin_gamma * h.d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
 
     // Derivatives with respect to gamma
-    let d2_velocity_rate_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-    let d2_velocity_rate_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_gamma_rate_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_gamma_rate_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
+    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_gamma_rate_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
     // Derivatives with respect to altitude
     let d2_c_m_d_velocity_d_altitude = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
@@ -214,8 +133,7 @@ fn hessian_by_altitude_gamma<R: Real>(
             + i.c_m * h.d2_reference_force_d_velocity_d_altitude
             + i.reference_force * d2_c_m_d_velocity_d_altitude)
         + p.z_t * h.d2_thrust_d_velocity_d_altitude; // lb*s/ft^2
-    let d2_pitch_acceleration_d_velocity_d_altitude = d2_pitching_moment_d_velocity_d_altitude
-        * p.inv_i_yy; // rad/s/ft^2
+    hessian.pitch_rate.altitude.velocity = d2_pitching_moment_d_velocity_d_altitude * p.inv_i_yy; // rad/s/ft^2
     let d2_c_m_d_altitude_d_altitude = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_m_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_m_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
@@ -224,63 +142,48 @@ fn hessian_by_altitude_gamma<R: Real>(
             + i.c_m * h.d2_reference_force_d_altitude_d_altitude
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
         + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
-    let d2_pitch_acceleration_d_altitude_d_altitude = d2_pitching_moment_d_altitude_d_altitude
-        * p.inv_i_yy; // rad/s^2/ft^2
+    hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
 
-    hessian.velocity_by_altitude_velocity = d2_velocity_rate_d_velocity_d_altitude;
-    hessian.velocity_by_altitude_altitude = d2_velocity_rate_d_altitude_d_altitude;
-    hessian.gamma_by_altitude_velocity = h.d2_gamma_rate_d_velocity_d_altitude;
-    hessian.gamma_by_altitude_altitude = h.d2_gamma_rate_d_altitude_d_altitude;
-    hessian.alpha_by_altitude_velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = -h.d2_gamma_rate_d_altitude_d_altitude;
-    hessian.pitch_rate_by_altitude_velocity = d2_pitch_acceleration_d_velocity_d_altitude;
-    hessian.pitch_rate_by_altitude_altitude = d2_pitch_acceleration_d_altitude_d_altitude;
-    hessian.velocity_by_gamma_altitude = d2_velocity_rate_d_altitude_d_gamma;
-    hessian.velocity_by_gamma_gamma = d2_velocity_rate_d_gamma_d_gamma;
-    hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = d2_gamma_rate_d_velocity_d_gamma;
-    hessian.gamma_by_gamma_altitude = d2_gamma_rate_d_altitude_d_gamma;
-    hessian.gamma_by_gamma_gamma = d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = -d2_gamma_rate_d_velocity_d_gamma;
-    hessian.alpha_by_gamma_altitude = -d2_gamma_rate_d_altitude_d_gamma;
-    hessian.alpha_by_gamma_gamma = -d2_gamma_rate_d_gamma_d_gamma;
+    hessian.gamma.altitude.velocity = h.d2_gamma_rate_d_velocity_d_altitude;
+    hessian.gamma.altitude.altitude = h.d2_gamma_rate_d_altitude_d_altitude;
+    hessian.alpha.altitude.velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
+    hessian.alpha.altitude.altitude = -h.d2_gamma_rate_d_altitude_d_altitude;
+    hessian.altitude.gamma.velocity = i.cos_gamma;
+    hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
+    hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
+    hessian.alpha.gamma.gamma = -hessian.gamma.gamma.gamma;
 }
 
 /// Entries of [`hessian_values`]: derivatives by alpha, chi_1.
 #[inline(always)]
 fn hessian_by_alpha_chi_1<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
     let d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_velocity_d_alpha
         - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
+    hessian.velocity.alpha.velocity = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
 
     // Derivatives with respect to chi_1
     let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_chi_1 = i.cos_alpha * d2_thrust_d_velocity_d_chi_1
         - d2_drag_d_velocity_d_chi_1; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_chi_1 = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.chi_1.velocity = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
     let d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_altitude_d_alpha
         - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
-    let d2_velocity_rate_d_altitude_d_alpha = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
+    hessian.velocity.alpha.altitude = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to chi_1
     let d2_thrust_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_chi_1 = i.cos_alpha * d2_thrust_d_altitude_d_chi_1
         - d2_drag_d_altitude_d_chi_1; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_chi_1 = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    hessian.velocity.chi_1.altitude = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
@@ -288,212 +191,155 @@ fn hessian_by_alpha_chi_1<R: Real>(
         + i.thrust * d2_cos_alpha_d_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_d_alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
+    hessian.velocity.alpha.alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
 
     // Derivatives with respect to chi_1
-    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_1; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_1 = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-    let d2_force_turn_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_chi_1; // rad/ft^1.5/slug^0.5
-    let d2_force_turn_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_chi_1; // rad/s/ft^1.5/slug^0.5
-    let d2_force_turn_d_alpha_d_chi_1 = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
-    let d2_pitching_moment_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_velocity_d_chi_1; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_chi_1 = d2_pitching_moment_d_velocity_d_chi_1
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-    let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
-        * p.c_bar_c_m_eta_1 + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_altitude_d_chi_1 = d2_pitching_moment_d_altitude_d_chi_1
-        * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_1;
+    hessian.velocity.chi_1.alpha = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    hessian.gamma.chi_1.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_1; // rad/ft^1.5/slug^0.5
+    hessian.gamma.chi_1.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_1; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.chi_1.alpha = i.turn_factor * s.cos_alpha_c_t_eta_1; // 1/s/ft^0.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_1
+        + p.z_t * d2_thrust_d_velocity_d_chi_1; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_1.velocity = d2_pitching_moment_d_velocity_d_chi_1 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
+        + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_1.altitude = d2_pitching_moment_d_altitude_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_alpha_velocity = d2_velocity_rate_d_velocity_d_alpha;
-    hessian.velocity_by_alpha_altitude = d2_velocity_rate_d_altitude_d_alpha;
-    hessian.velocity_by_alpha_alpha = d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma_by_alpha_velocity = h.d2_force_turn_d_velocity_d_alpha;
-    hessian.gamma_by_alpha_altitude = h.d2_force_turn_d_altitude_d_alpha;
-    hessian.gamma_by_alpha_alpha = h.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha_by_alpha_velocity = -h.d2_force_turn_d_velocity_d_alpha;
-    hessian.alpha_by_alpha_altitude = -h.d2_force_turn_d_altitude_d_alpha;
-    hessian.alpha_by_alpha_alpha = -h.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
-    hessian.pitch_rate_by_alpha_altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
-    hessian.pitch_rate_by_alpha_alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
-    hessian.velocity_by_chi_1_velocity = d2_velocity_rate_d_velocity_d_chi_1;
-    hessian.velocity_by_chi_1_altitude = d2_velocity_rate_d_altitude_d_chi_1;
-    hessian.velocity_by_chi_1_alpha = d2_velocity_rate_d_alpha_d_chi_1;
-    hessian.gamma_by_chi_1_velocity = d2_force_turn_d_velocity_d_chi_1;
-    hessian.gamma_by_chi_1_altitude = d2_force_turn_d_altitude_d_chi_1;
-    hessian.gamma_by_chi_1_alpha = d2_force_turn_d_alpha_d_chi_1;
-    hessian.alpha_by_chi_1_velocity = -d2_force_turn_d_velocity_d_chi_1;
-    hessian.alpha_by_chi_1_altitude = -d2_force_turn_d_altitude_d_chi_1;
-    hessian.alpha_by_chi_1_alpha = -d2_force_turn_d_alpha_d_chi_1;
-    hessian.pitch_rate_by_chi_1_velocity = d2_pitch_acceleration_d_velocity_d_chi_1;
-    hessian.pitch_rate_by_chi_1_altitude = d2_pitch_acceleration_d_altitude_d_chi_1;
+    hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha.alpha.velocity = -h.d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha.alpha.altitude = -h.d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha.alpha.alpha = -h.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate.alpha.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate.alpha.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.alpha.chi_1.velocity = -hessian.gamma.chi_1.velocity;
+    hessian.alpha.chi_1.altitude = -hessian.gamma.chi_1.altitude;
+    hessian.alpha.chi_1.alpha = -hessian.gamma.chi_1.alpha;
 }
 
 /// Entries of [`hessian_values`]: derivatives by chi_2, chi_3.
 #[inline(always)]
 fn hessian_by_chi_2_chi_3<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to chi_2
     let d2_thrust_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_chi_2 = i.cos_alpha * d2_thrust_d_velocity_d_chi_2
         - d2_drag_d_velocity_d_chi_2; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_chi_2 = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.chi_2.velocity = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_chi_3 = i.cos_alpha * d2_thrust_d_velocity_d_chi_3
         - d2_drag_d_velocity_d_chi_3; // lb*s/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_velocity_d_chi_3 = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.chi_3.velocity = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d2_thrust_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_chi_2 = i.cos_alpha * d2_thrust_d_altitude_d_chi_2
         - d2_drag_d_altitude_d_chi_2; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_chi_2 = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    hessian.velocity.chi_2.altitude = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
     let d2_thrust_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_chi_3 = i.cos_alpha * d2_thrust_d_altitude_d_chi_3
         - d2_drag_d_altitude_d_chi_3; // lb/ft^2.5/slug^0.5
-    let d2_velocity_rate_d_altitude_d_chi_3 = d2_path_force_d_altitude_d_chi_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    hessian.velocity.chi_3.altitude = d2_path_force_d_altitude_d_chi_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_2; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_2 = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2;
+    hessian.velocity.chi_2.alpha = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force
-        * p.c_t_eta_3; // lb/ft^1.5/rad/slug^0.5
-    let d2_velocity_rate_d_alpha_d_chi_3 = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_3;
+    hessian.velocity.chi_3.alpha = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_force_turn_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
+    hessian.gamma.chi_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_force_turn_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_chi_3; // rad/ft^1.5/slug^0.5
+    hessian.gamma.chi_3.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_3; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_force_turn_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.chi_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_force_turn_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
-        * s.d_normal_coefficient_d_chi_3; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.chi_3.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_3; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_force_turn_d_alpha_d_chi_2 = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    hessian.gamma.chi_2.alpha = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_force_turn_d_alpha_d_chi_3 = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
+    hessian.gamma.chi_3.alpha = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_pitching_moment_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_2 + p.z_t * d2_thrust_d_velocity_d_chi_2; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_chi_2 = d2_pitching_moment_d_velocity_d_chi_2
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_velocity_d_chi_2; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_2.velocity = d2_pitching_moment_d_velocity_d_chi_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_pitching_moment_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
-        * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_velocity_d_chi_3; // lb*s/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_velocity_d_chi_3 = d2_pitching_moment_d_velocity_d_chi_3
-        * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_3
+        + p.z_t * d2_thrust_d_velocity_d_chi_3; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_3.velocity = d2_pitching_moment_d_velocity_d_chi_3 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
-        * p.c_bar_c_m_eta_2 + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_altitude_d_chi_2 = d2_pitching_moment_d_altitude_d_chi_2
-        * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_3
-    let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
-        * p.c_bar_c_m_eta_3 + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
-    let d2_pitch_acceleration_d_altitude_d_chi_3 = d2_pitching_moment_d_altitude_d_chi_3
-        * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
+        + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_3.altitude = d2_pitching_moment_d_altitude_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_chi_2_velocity = d2_velocity_rate_d_velocity_d_chi_2;
-    hessian.velocity_by_chi_2_altitude = d2_velocity_rate_d_altitude_d_chi_2;
-    hessian.velocity_by_chi_2_alpha = d2_velocity_rate_d_alpha_d_chi_2;
-    hessian.gamma_by_chi_2_velocity = d2_force_turn_d_velocity_d_chi_2;
-    hessian.gamma_by_chi_2_altitude = d2_force_turn_d_altitude_d_chi_2;
-    hessian.gamma_by_chi_2_alpha = d2_force_turn_d_alpha_d_chi_2;
-    hessian.alpha_by_chi_2_velocity = -d2_force_turn_d_velocity_d_chi_2;
-    hessian.alpha_by_chi_2_altitude = -d2_force_turn_d_altitude_d_chi_2;
-    hessian.alpha_by_chi_2_alpha = -d2_force_turn_d_alpha_d_chi_2;
-    hessian.pitch_rate_by_chi_2_velocity = d2_pitch_acceleration_d_velocity_d_chi_2;
-    hessian.pitch_rate_by_chi_2_altitude = d2_pitch_acceleration_d_altitude_d_chi_2;
-    hessian.velocity_by_chi_3_velocity = d2_velocity_rate_d_velocity_d_chi_3;
-    hessian.velocity_by_chi_3_altitude = d2_velocity_rate_d_altitude_d_chi_3;
-    hessian.velocity_by_chi_3_alpha = d2_velocity_rate_d_alpha_d_chi_3;
-    hessian.gamma_by_chi_3_velocity = d2_force_turn_d_velocity_d_chi_3;
-    hessian.gamma_by_chi_3_altitude = d2_force_turn_d_altitude_d_chi_3;
-    hessian.gamma_by_chi_3_alpha = d2_force_turn_d_alpha_d_chi_3;
-    hessian.alpha_by_chi_3_velocity = -d2_force_turn_d_velocity_d_chi_3;
-    hessian.alpha_by_chi_3_altitude = -d2_force_turn_d_altitude_d_chi_3;
-    hessian.alpha_by_chi_3_alpha = -d2_force_turn_d_alpha_d_chi_3;
-    hessian.pitch_rate_by_chi_3_velocity = d2_pitch_acceleration_d_velocity_d_chi_3;
-    hessian.pitch_rate_by_chi_3_altitude = d2_pitch_acceleration_d_altitude_d_chi_3;
+    hessian.alpha.chi_2.velocity = -hessian.gamma.chi_2.velocity;
+    hessian.alpha.chi_2.altitude = -hessian.gamma.chi_2.altitude;
+    hessian.alpha.chi_2.alpha = -hessian.gamma.chi_2.alpha;
+    hessian.alpha.chi_3.velocity = -hessian.gamma.chi_3.velocity;
+    hessian.alpha.chi_3.altitude = -hessian.gamma.chi_3.altitude;
+    hessian.alpha.chi_3.alpha = -hessian.gamma.chi_3.alpha;
 }
 
 /// Entries of [`hessian_values`]: derivatives by alpha_gust.
 #[inline(always)]
-fn hessian_by_alpha_gust<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    h: &Curvatures<R>,
-) {
+fn hessian_by_alpha_gust<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, h: &Curvatures<R>) {
     // Derivatives with respect to alpha_gust
-    let d2_path_force_d_velocity_d_alpha_gust = h
-        .cos_alpha_times_d2_thrust_d_velocity_d_alpha - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
-    let d2_velocity_rate_d_velocity_d_alpha_gust = d2_path_force_d_velocity_d_alpha_gust
-        * p.inv_m; // 1/s/rad
-    let d2_path_force_d_altitude_d_alpha_gust = h
-        .cos_alpha_times_d2_thrust_d_altitude_d_alpha - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
-    let d2_velocity_rate_d_altitude_d_alpha_gust = d2_path_force_d_altitude_d_alpha_gust
-        * p.inv_m; // 1/s^2/rad
+    let d2_path_force_d_velocity_d_alpha_gust = h.cos_alpha_times_d2_thrust_d_velocity_d_alpha
+        - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
+    hessian.velocity.alpha_gust.velocity = d2_path_force_d_velocity_d_alpha_gust * p.inv_m; // 1/s/rad
+    let d2_path_force_d_altitude_d_alpha_gust = h.cos_alpha_times_d2_thrust_d_altitude_d_alpha
+        - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
+    hessian.velocity.alpha_gust.altitude = d2_path_force_d_altitude_d_alpha_gust * p.inv_m; // 1/s^2/rad
     let d2_path_force_d_alpha_d_alpha_gust = h.d_thrust_d_alpha_times_d_cos_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_d_alpha_gust = d2_path_force_d_alpha_d_alpha_gust
-        * p.inv_m; // ft/s^2/rad^2
-    let d2_path_force_d_alpha_gust_d_alpha_gust = h
-        .cos_alpha_times_d2_thrust_d_alpha_d_alpha - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
-    let d2_velocity_rate_d_alpha_gust_d_alpha_gust = d2_path_force_d_alpha_gust_d_alpha_gust
-        * p.inv_m; // ft/s^2/rad^2
+    hessian.velocity.alpha_gust.alpha = d2_path_force_d_alpha_d_alpha_gust * p.inv_m; // ft/s^2/rad^2
+    let d2_path_force_d_alpha_gust_d_alpha_gust = h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
+        - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
+    hessian.velocity.alpha_gust.alpha_gust = d2_path_force_d_alpha_gust_d_alpha_gust * p.inv_m; // ft/s^2/rad^2
 
-    hessian.velocity_by_alpha_gust_velocity = d2_velocity_rate_d_velocity_d_alpha_gust;
-    hessian.velocity_by_alpha_gust_altitude = d2_velocity_rate_d_altitude_d_alpha_gust;
-    hessian.velocity_by_alpha_gust_alpha = d2_velocity_rate_d_alpha_d_alpha_gust;
-    hessian.velocity_by_alpha_gust_alpha_gust = d2_velocity_rate_d_alpha_gust_d_alpha_gust;
-    hessian.gamma_by_alpha_gust_velocity = h.d2_force_turn_d_velocity_d_alpha_gust;
-    hessian.gamma_by_alpha_gust_altitude = h.d2_force_turn_d_altitude_d_alpha_gust;
-    hessian.gamma_by_alpha_gust_alpha = h.d2_force_turn_d_alpha_d_alpha_gust;
-    hessian.gamma_by_alpha_gust_alpha_gust = h.d2_force_turn_d_alpha_gust_d_alpha_gust;
-    hessian.alpha_by_alpha_gust_velocity = -h.d2_force_turn_d_velocity_d_alpha_gust;
-    hessian.alpha_by_alpha_gust_altitude = -h.d2_force_turn_d_altitude_d_alpha_gust;
-    hessian.alpha_by_alpha_gust_alpha = -h.d2_force_turn_d_alpha_d_alpha_gust;
-    hessian.alpha_by_alpha_gust_alpha_gust = -h.d2_force_turn_d_alpha_gust_d_alpha_gust;
-    hessian.pitch_rate_by_alpha_gust_velocity = h
-        .d2_pitch_acceleration_d_velocity_d_alpha;
-    hessian.pitch_rate_by_alpha_gust_altitude = h
-        .d2_pitch_acceleration_d_altitude_d_alpha;
-    hessian.pitch_rate_by_alpha_gust_alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_gust_alpha_gust = h
-        .d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.gamma.alpha_gust.velocity = h.d2_force_turn_d_velocity_d_alpha_gust;
+    hessian.gamma.alpha_gust.altitude = h.d2_force_turn_d_altitude_d_alpha_gust;
+    hessian.gamma.alpha_gust.alpha = h.d2_force_turn_d_alpha_d_alpha_gust;
+    hessian.gamma.alpha_gust.alpha_gust = h.d2_force_turn_d_alpha_gust_d_alpha_gust;
+    hessian.alpha.alpha_gust.velocity = -h.d2_force_turn_d_velocity_d_alpha_gust;
+    hessian.alpha.alpha_gust.altitude = -h.d2_force_turn_d_altitude_d_alpha_gust;
+    hessian.alpha.alpha_gust.alpha = -h.d2_force_turn_d_alpha_d_alpha_gust;
+    hessian.alpha.alpha_gust.alpha_gust = -h.d2_force_turn_d_alpha_gust_d_alpha_gust;
+    hessian.pitch_rate.alpha_gust.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate.alpha_gust.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate.alpha_gust.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.pitch_rate.alpha_gust.alpha_gust = h.d2_pitch_acceleration_d_alpha_d_alpha;
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
@@ -502,11 +348,7 @@ fn hessian_by_alpha_gust<R: Real>(
 ///
 /// 764 operations: 249 additions, 510 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn hessian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> HessianEntries<R> {
+pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);

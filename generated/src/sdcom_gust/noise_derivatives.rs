@@ -7,8 +7,7 @@ use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`NoiseDerivatives`].
-    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
-        
+    pub struct NoiseDerivativesEntries in noise_derivatives_entries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
     }
 }
 
@@ -18,21 +17,14 @@ ahv_core::entries! {
 ///
 /// No operations.
 #[inline(always)]
-pub fn noise_derivatives_values<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    _p: &Prepared<R>,
-) -> NoiseDerivativesEntries<R> {
-    NoiseDerivativesEntries::splat(R::ZERO)
+pub fn noise_derivatives_values<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
+    let noise_derivatives = NoiseDerivativesEntries::splat(R::ZERO);
+    noise_derivatives
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 #[inline(always)]
-pub fn noise_derivatives<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivatives<R> {
+pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivatives<R> {
     noise_derivatives_values(x, u, p).dense()
 }
 
@@ -41,11 +33,7 @@ pub fn noise_derivatives<R: Real>(
 ///
 /// No operations.
 #[inline(always)]
-pub fn ito_correction<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    _p: &Prepared<R>,
-) -> State<R> {
+pub fn ito_correction<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> State<R> {
     State {
         velocity: R::ZERO,
         altitude: R::ZERO,

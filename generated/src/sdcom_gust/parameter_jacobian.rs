@@ -3,226 +3,55 @@
 //! Functions of SDCOM_GUST. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
-    State, curvatures, intermediates, sensitivities, slopes,
+    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes, State, curvatures,
+    intermediates, sensitivities, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity_by_m: velocity.m,
-        velocity_by_s: velocity.s,
-        velocity_by_rho_0: velocity.rho_0,
-        velocity_by_h_0: velocity.h_0,
-        velocity_by_h_s: velocity.h_s,
-        velocity_by_g: velocity.g,
-        velocity_by_r_e: velocity.r_e,
-        velocity_by_omega_1: velocity.omega_1,
-        velocity_by_omega_2: velocity.omega_2,
-        velocity_by_omega_3: velocity.omega_3,
-        velocity_by_canard_command: velocity.canard_command,
-        velocity_by_canard_slaving: velocity.canard_slaving,
-        velocity_by_spherical_earth: velocity.spherical_earth,
-        velocity_by_c_t_phi_alpha_3: velocity.c_t_phi_alpha_3,
-        velocity_by_c_t_phi_alpha_2: velocity.c_t_phi_alpha_2,
-        velocity_by_c_t_phi_alpha: velocity.c_t_phi_alpha,
-        velocity_by_c_t_phi: velocity.c_t_phi,
-        velocity_by_c_t_alpha_3: velocity.c_t_alpha_3,
-        velocity_by_c_t_alpha_2: velocity.c_t_alpha_2,
-        velocity_by_c_t_alpha: velocity.c_t_alpha,
-        velocity_by_c_t_0: velocity.c_t_0,
-        velocity_by_c_t_eta_1: velocity.c_t_eta_1,
-        velocity_by_c_t_eta_2: velocity.c_t_eta_2,
-        velocity_by_c_t_eta_3: velocity.c_t_eta_3,
-        velocity_by_c_l_delta_e: velocity.c_l_delta_e,
-        velocity_by_c_l_delta_c: velocity.c_l_delta_c,
-        velocity_by_c_d_alpha_2: velocity.c_d_alpha_2,
-        velocity_by_c_d_alpha: velocity.c_d_alpha,
-        velocity_by_c_d_delta_e_2: velocity.c_d_delta_e_2,
-        velocity_by_c_d_delta_e: velocity.c_d_delta_e,
-        velocity_by_c_d_delta_c_2: velocity.c_d_delta_c_2,
-        velocity_by_c_d_delta_c: velocity.c_d_delta_c,
-        velocity_by_c_d_0: velocity.c_d_0,
-        velocity_by_c_d_eta_1: velocity.c_d_eta_1,
-        velocity_by_c_d_eta_2: velocity.c_d_eta_2,
-        velocity_by_c_d_eta_3: velocity.c_d_eta_3,
-        velocity_by_c_n_1_alpha_2: velocity.c_n_1_alpha_2,
-        velocity_by_c_n_1_alpha: velocity.c_n_1_alpha,
-        velocity_by_c_n_1_delta_e: velocity.c_n_1_delta_e,
-        velocity_by_c_n_1_delta_c: velocity.c_n_1_delta_c,
-        velocity_by_c_n_1_0: velocity.c_n_1_0,
-        velocity_by_c_n_2_alpha_2: velocity.c_n_2_alpha_2,
-        velocity_by_c_n_2_alpha: velocity.c_n_2_alpha,
-        velocity_by_c_n_2_delta_e: velocity.c_n_2_delta_e,
-        velocity_by_c_n_2_delta_c: velocity.c_n_2_delta_c,
-        velocity_by_c_n_2_0: velocity.c_n_2_0,
-        velocity_by_c_n_3_alpha_2: velocity.c_n_3_alpha_2,
-        velocity_by_c_n_3_alpha: velocity.c_n_3_alpha,
-        velocity_by_c_n_3_delta_e: velocity.c_n_3_delta_e,
-        velocity_by_c_n_3_delta_c: velocity.c_n_3_delta_c,
-        velocity_by_c_n_3_0: velocity.c_n_3_0,
-        gamma_by_m: gamma.m,
-        gamma_by_s: gamma.s,
-        gamma_by_rho_0: gamma.rho_0,
-        gamma_by_h_0: gamma.h_0,
-        gamma_by_h_s: gamma.h_s,
-        gamma_by_g: gamma.g,
-        gamma_by_r_e: gamma.r_e,
-        gamma_by_omega_1: gamma.omega_1,
-        gamma_by_omega_2: gamma.omega_2,
-        gamma_by_omega_3: gamma.omega_3,
-        gamma_by_canard_command: gamma.canard_command,
-        gamma_by_canard_slaving: gamma.canard_slaving,
-        gamma_by_spherical_earth: gamma.spherical_earth,
-        gamma_by_c_t_phi_alpha_3: gamma.c_t_phi_alpha_3,
-        gamma_by_c_t_phi_alpha_2: gamma.c_t_phi_alpha_2,
-        gamma_by_c_t_phi_alpha: gamma.c_t_phi_alpha,
-        gamma_by_c_t_phi: gamma.c_t_phi,
-        gamma_by_c_t_alpha_3: gamma.c_t_alpha_3,
-        gamma_by_c_t_alpha_2: gamma.c_t_alpha_2,
-        gamma_by_c_t_alpha: gamma.c_t_alpha,
-        gamma_by_c_t_0: gamma.c_t_0,
-        gamma_by_c_t_eta_1: gamma.c_t_eta_1,
-        gamma_by_c_t_eta_2: gamma.c_t_eta_2,
-        gamma_by_c_t_eta_3: gamma.c_t_eta_3,
-        gamma_by_c_l_alpha: gamma.c_l_alpha,
-        gamma_by_c_l_delta_e: gamma.c_l_delta_e,
-        gamma_by_c_l_delta_c: gamma.c_l_delta_c,
-        gamma_by_c_l_0: gamma.c_l_0,
-        gamma_by_c_l_eta_1: gamma.c_l_eta_1,
-        gamma_by_c_l_eta_2: gamma.c_l_eta_2,
-        gamma_by_c_l_eta_3: gamma.c_l_eta_3,
-        gamma_by_c_n_1_alpha_2: gamma.c_n_1_alpha_2,
-        gamma_by_c_n_1_alpha: gamma.c_n_1_alpha,
-        gamma_by_c_n_1_delta_e: gamma.c_n_1_delta_e,
-        gamma_by_c_n_1_delta_c: gamma.c_n_1_delta_c,
-        gamma_by_c_n_1_0: gamma.c_n_1_0,
-        gamma_by_c_n_2_alpha_2: gamma.c_n_2_alpha_2,
-        gamma_by_c_n_2_alpha: gamma.c_n_2_alpha,
-        gamma_by_c_n_2_delta_e: gamma.c_n_2_delta_e,
-        gamma_by_c_n_2_delta_c: gamma.c_n_2_delta_c,
-        gamma_by_c_n_2_0: gamma.c_n_2_0,
-        gamma_by_c_n_3_alpha_2: gamma.c_n_3_alpha_2,
-        gamma_by_c_n_3_alpha: gamma.c_n_3_alpha,
-        gamma_by_c_n_3_delta_e: gamma.c_n_3_delta_e,
-        gamma_by_c_n_3_delta_c: gamma.c_n_3_delta_c,
-        gamma_by_c_n_3_0: gamma.c_n_3_0,
-        alpha_by_m: alpha.m,
-        alpha_by_s: alpha.s,
-        alpha_by_rho_0: alpha.rho_0,
-        alpha_by_h_0: alpha.h_0,
-        alpha_by_h_s: alpha.h_s,
-        alpha_by_g: alpha.g,
-        alpha_by_r_e: alpha.r_e,
-        alpha_by_omega_1: alpha.omega_1,
-        alpha_by_omega_2: alpha.omega_2,
-        alpha_by_omega_3: alpha.omega_3,
-        alpha_by_canard_command: alpha.canard_command,
-        alpha_by_canard_slaving: alpha.canard_slaving,
-        alpha_by_spherical_earth: alpha.spherical_earth,
-        alpha_by_c_t_phi_alpha_3: alpha.c_t_phi_alpha_3,
-        alpha_by_c_t_phi_alpha_2: alpha.c_t_phi_alpha_2,
-        alpha_by_c_t_phi_alpha: alpha.c_t_phi_alpha,
-        alpha_by_c_t_phi: alpha.c_t_phi,
-        alpha_by_c_t_alpha_3: alpha.c_t_alpha_3,
-        alpha_by_c_t_alpha_2: alpha.c_t_alpha_2,
-        alpha_by_c_t_alpha: alpha.c_t_alpha,
-        alpha_by_c_t_0: alpha.c_t_0,
-        alpha_by_c_t_eta_1: alpha.c_t_eta_1,
-        alpha_by_c_t_eta_2: alpha.c_t_eta_2,
-        alpha_by_c_t_eta_3: alpha.c_t_eta_3,
-        alpha_by_c_l_alpha: alpha.c_l_alpha,
-        alpha_by_c_l_delta_e: alpha.c_l_delta_e,
-        alpha_by_c_l_delta_c: alpha.c_l_delta_c,
-        alpha_by_c_l_0: alpha.c_l_0,
-        alpha_by_c_l_eta_1: alpha.c_l_eta_1,
-        alpha_by_c_l_eta_2: alpha.c_l_eta_2,
-        alpha_by_c_l_eta_3: alpha.c_l_eta_3,
-        alpha_by_c_n_1_alpha_2: alpha.c_n_1_alpha_2,
-        alpha_by_c_n_1_alpha: alpha.c_n_1_alpha,
-        alpha_by_c_n_1_delta_e: alpha.c_n_1_delta_e,
-        alpha_by_c_n_1_delta_c: alpha.c_n_1_delta_c,
-        alpha_by_c_n_1_0: alpha.c_n_1_0,
-        alpha_by_c_n_2_alpha_2: alpha.c_n_2_alpha_2,
-        alpha_by_c_n_2_alpha: alpha.c_n_2_alpha,
-        alpha_by_c_n_2_delta_e: alpha.c_n_2_delta_e,
-        alpha_by_c_n_2_delta_c: alpha.c_n_2_delta_c,
-        alpha_by_c_n_2_0: alpha.c_n_2_0,
-        alpha_by_c_n_3_alpha_2: alpha.c_n_3_alpha_2,
-        alpha_by_c_n_3_alpha: alpha.c_n_3_alpha,
-        alpha_by_c_n_3_delta_e: alpha.c_n_3_delta_e,
-        alpha_by_c_n_3_delta_c: alpha.c_n_3_delta_c,
-        alpha_by_c_n_3_0: alpha.c_n_3_0,
-        pitch_rate_by_i_yy: pitch_rate.i_yy,
-        pitch_rate_by_s: pitch_rate.s,
-        pitch_rate_by_c_bar: pitch_rate.c_bar,
-        pitch_rate_by_z_t: pitch_rate.z_t,
-        pitch_rate_by_rho_0: pitch_rate.rho_0,
-        pitch_rate_by_h_0: pitch_rate.h_0,
-        pitch_rate_by_h_s: pitch_rate.h_s,
-        pitch_rate_by_omega_1: pitch_rate.omega_1,
-        pitch_rate_by_omega_2: pitch_rate.omega_2,
-        pitch_rate_by_omega_3: pitch_rate.omega_3,
-        pitch_rate_by_canard_command: pitch_rate.canard_command,
-        pitch_rate_by_canard_slaving: pitch_rate.canard_slaving,
-        pitch_rate_by_c_t_phi_alpha_3: pitch_rate.c_t_phi_alpha_3,
-        pitch_rate_by_c_t_phi_alpha_2: pitch_rate.c_t_phi_alpha_2,
-        pitch_rate_by_c_t_phi_alpha: pitch_rate.c_t_phi_alpha,
-        pitch_rate_by_c_t_phi: pitch_rate.c_t_phi,
-        pitch_rate_by_c_t_alpha_3: pitch_rate.c_t_alpha_3,
-        pitch_rate_by_c_t_alpha_2: pitch_rate.c_t_alpha_2,
-        pitch_rate_by_c_t_alpha: pitch_rate.c_t_alpha,
-        pitch_rate_by_c_t_0: pitch_rate.c_t_0,
-        pitch_rate_by_c_t_eta_1: pitch_rate.c_t_eta_1,
-        pitch_rate_by_c_t_eta_2: pitch_rate.c_t_eta_2,
-        pitch_rate_by_c_t_eta_3: pitch_rate.c_t_eta_3,
-        pitch_rate_by_c_l_delta_e: pitch_rate.c_l_delta_e,
-        pitch_rate_by_c_l_delta_c: pitch_rate.c_l_delta_c,
-        pitch_rate_by_c_m_alpha_2: pitch_rate.c_m_alpha_2,
-        pitch_rate_by_c_m_alpha: pitch_rate.c_m_alpha,
-        pitch_rate_by_c_m_delta_e: pitch_rate.c_m_delta_e,
-        pitch_rate_by_c_m_delta_c: pitch_rate.c_m_delta_c,
-        pitch_rate_by_c_m_0: pitch_rate.c_m_0,
-        pitch_rate_by_c_m_eta_1: pitch_rate.c_m_eta_1,
-        pitch_rate_by_c_m_eta_2: pitch_rate.c_m_eta_2,
-        pitch_rate_by_c_m_eta_3: pitch_rate.c_m_eta_3,
-        pitch_rate_by_c_n_1_alpha_2: pitch_rate.c_n_1_alpha_2,
-        pitch_rate_by_c_n_1_alpha: pitch_rate.c_n_1_alpha,
-        pitch_rate_by_c_n_1_delta_e: pitch_rate.c_n_1_delta_e,
-        pitch_rate_by_c_n_1_delta_c: pitch_rate.c_n_1_delta_c,
-        pitch_rate_by_c_n_1_0: pitch_rate.c_n_1_0,
-        pitch_rate_by_c_n_2_alpha_2: pitch_rate.c_n_2_alpha_2,
-        pitch_rate_by_c_n_2_alpha: pitch_rate.c_n_2_alpha,
-        pitch_rate_by_c_n_2_delta_e: pitch_rate.c_n_2_delta_e,
-        pitch_rate_by_c_n_2_delta_c: pitch_rate.c_n_2_delta_c,
-        pitch_rate_by_c_n_2_0: pitch_rate.c_n_2_0,
-        pitch_rate_by_c_n_3_alpha_2: pitch_rate.c_n_3_alpha_2,
-        pitch_rate_by_c_n_3_alpha: pitch_rate.c_n_3_alpha,
-        pitch_rate_by_c_n_3_delta_e: pitch_rate.c_n_3_delta_e,
-        pitch_rate_by_c_n_3_delta_c: pitch_rate.c_n_3_delta_c,
-        pitch_rate_by_c_n_3_0: pitch_rate.c_n_3_0,
-        chi_1_by_omega_1: chi_1.omega_1,
-        chi_1_by_zeta_1: chi_1.zeta_1,
-        chi_1_by_moment_matching: chi_1.moment_matching,
-        chi_2_by_omega_2: chi_2.omega_2,
-        chi_2_by_zeta_2: chi_2.zeta_2,
-        chi_2_by_moment_matching: chi_2.moment_matching,
-        chi_3_by_omega_3: chi_3.omega_3,
-        chi_3_by_zeta_3: chi_3.zeta_3,
-        chi_3_by_moment_matching: chi_3.moment_matching,
-        alpha_gust_by_gust_time: alpha_gust.gust_time,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        velocity {
+            m, s, rho_0, h_0, h_s, g, r_e, omega_1, omega_2, omega_3, canard_command, canard_slaving, spherical_earth,
+            c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0,
+            c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_delta_e, c_l_delta_c, c_d_alpha_2, c_d_alpha, c_d_delta_e_2,
+            c_d_delta_e, c_d_delta_c_2, c_d_delta_c, c_d_0, c_d_eta_1, c_d_eta_2, c_d_eta_3, c_n_1_alpha_2, c_n_1_alpha,
+            c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0,
+            c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        gamma {
+            m, s, rho_0, h_0, h_s, g, r_e, omega_1, omega_2, omega_3, canard_command, canard_slaving, spherical_earth,
+            c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0,
+            c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_alpha, c_l_delta_e, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2,
+            c_l_eta_3, c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha,
+            c_n_2_delta_e, c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        alpha {
+            m, s, rho_0, h_0, h_s, g, r_e, omega_1, omega_2, omega_3, canard_command, canard_slaving, spherical_earth,
+            c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0,
+            c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_alpha, c_l_delta_e, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2,
+            c_l_eta_3, c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha,
+            c_n_2_delta_e, c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        pitch_rate {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, omega_1, omega_2, omega_3, canard_command, canard_slaving,
+            c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0,
+            c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_delta_e, c_l_delta_c, c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_delta_c,
+            c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3, c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0,
+            c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2, c_n_3_alpha,
+            c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        chi_1 { omega_1, zeta_1, moment_matching }
+        chi_2 { omega_2, zeta_2, moment_matching }
+        chi_3 { omega_3, zeta_3, moment_matching }
+        alpha_gust { gust_time }
     }
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
 fn parameter_jacobian_by_vehicle<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
     let d_c_t_d_s = i.dynamic_pressure
@@ -235,42 +64,33 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + p.c_d_eta_3_times_inv_omega_3_2 * i.c_n_3); // 1/ft
     let d_drag_d_s = i.c_d * i.dynamic_pressure + i.reference_force * d_c_d_d_s; // lb/ft^2
     let d_path_force_d_s = i.cos_alpha * d_thrust_d_s - d_drag_d_s; // lb/ft^2
-    let d_velocity_rate_d_s = d_path_force_d_s * p.inv_m; // 1/s^2
+    parameter.velocity.s = d_path_force_d_s * p.inv_m; // 1/s^2
     let d_c_l_d_s = i.dynamic_pressure
         * (p.c_l_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_l_eta_2_inv_omega_2_2 * i.c_n_2
             + p.c_l_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
     let d_normal_coefficient_d_s = i.sin_alpha * d_c_t_d_s + d_c_l_d_s; // 1/ft
-    let d_force_turn_d_s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity
-        * p.half_over_m + i.turn_factor * d_normal_coefficient_d_s; // rad/s/ft
+    parameter.gamma.s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.half_over_m
+        + i.turn_factor * d_normal_coefficient_d_s; // rad/s/ft
     let d_c_m_d_s = i.dynamic_pressure
         * (p.c_m_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_m_eta_2_inv_omega_2_2 * i.c_n_2
             + p.c_m_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
     let d_pitching_moment_d_s = p.c_bar
-        * (i.c_m * i.dynamic_pressure + i.reference_force * d_c_m_d_s)
-        + p.z_t * d_thrust_d_s; // lb/ft
-    let d_pitch_acceleration_d_s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
+        * (i.c_m * i.dynamic_pressure + i.reference_force * d_c_m_d_s) + p.z_t * d_thrust_d_s; // lb/ft
+    parameter.pitch_rate.s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
 
-    parameter.velocity_by_m = -i.path_force * p.inv_m_2;
-    parameter.velocity_by_s = d_velocity_rate_d_s;
-    parameter.gamma_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
-        * p.minus_half_inv_m_2;
-    parameter.gamma_by_s = d_force_turn_d_s;
-    parameter.alpha_by_m = i.normal_coefficient * s.d_reference_force_d_velocity
-        * p.half_inv_m_2;
-    parameter.alpha_by_s = -d_force_turn_d_s;
-    parameter.pitch_rate_by_i_yy = -i.pitch_acceleration * p.inv_i_yy;
-    parameter.pitch_rate_by_s = d_pitch_acceleration_d_s;
-    parameter.pitch_rate_by_c_bar = i.reference_force * i.c_m * p.inv_i_yy;
-    parameter.pitch_rate_by_z_t = i.thrust * p.inv_i_yy;
+    parameter.velocity.m = -i.path_force * p.inv_m_2;
+    parameter.gamma.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2;
+    parameter.alpha.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.half_inv_m_2;
+    parameter.alpha.s = -parameter.gamma.s;
+    parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_i_yy;
+    parameter.pitch_rate.c_bar = i.reference_force * i.c_m * p.inv_i_yy;
+    parameter.pitch_rate.z_t = i.thrust * p.inv_i_yy;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by environment.
 #[inline(always)]
 fn parameter_jacobian_by_environment<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_c_d_d_rho_0 = p.s * i.density_ratio
@@ -280,141 +100,110 @@ fn parameter_jacobian_by_environment<R: Real>(
     let d_drag_d_rho_0 = i.c_d * p.half_s * i.velocity_2 * i.density_ratio
         + i.reference_force * d_c_d_d_rho_0; // lb*ft^2/slug
     let d_path_force_d_rho_0 = i.cos_alpha * q.d_thrust_d_rho_0 - d_drag_d_rho_0; // lb*ft^2/slug
-    let d_velocity_rate_d_rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
+    parameter.velocity.rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
     let d_c_m_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_m_eta_1_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_m_eta_2_inv_omega_2_2 * i.c_n_2 * i.velocity_2
             + p.half_c_m_eta_3_inv_omega_3_2 * i.c_n_3 * i.velocity_2); // ft^3/slug
     let d_pitching_moment_d_rho_0 = p.c_bar
-        * (p.half_s * i.c_m * i.velocity_2 * i.density_ratio
-            + i.reference_force * d_c_m_d_rho_0) + p.z_t * q.d_thrust_d_rho_0; // lb*ft^3/slug
-    let d_pitch_acceleration_d_rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
+        * (p.half_s * i.c_m * i.velocity_2 * i.density_ratio + i.reference_force * d_c_m_d_rho_0)
+        + p.z_t * q.d_thrust_d_rho_0; // lb*ft^3/slug
+    parameter.pitch_rate.rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy; // rad*ft^3/s^2/slug
     let d_c_d_d_h_0 = p.c_d_eta_1 * q.d_eta_static_1_d_h_0
         + p.c_d_eta_2 * q.d_eta_static_2_d_h_0
         + p.c_d_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
-    let d_drag_d_h_0 = i.c_d * q.d_reference_force_d_h_0
-        + i.reference_force * d_c_d_d_h_0; // lb/ft^2
+    let d_drag_d_h_0 = i.c_d * q.d_reference_force_d_h_0 + i.reference_force * d_c_d_d_h_0; // lb/ft^2
     let d_path_force_d_h_0 = i.cos_alpha * q.d_thrust_d_h_0 - d_drag_d_h_0; // lb/ft^2
-    let d_velocity_rate_d_h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
+    parameter.velocity.h_0 = d_path_force_d_h_0 * p.inv_m; // 1/s^2
     let d_c_m_d_h_0 = p.c_m_eta_1 * q.d_eta_static_1_d_h_0
         + p.c_m_eta_2 * q.d_eta_static_2_d_h_0
         + p.c_m_eta_3 * q.d_eta_static_3_d_h_0; // 1/ft
     let d_pitching_moment_d_h_0 = p.c_bar
-        * (i.c_m * q.d_reference_force_d_h_0 + i.reference_force * d_c_m_d_h_0)
-        + p.z_t * q.d_thrust_d_h_0; // lb/ft
-    let d_pitch_acceleration_d_h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
+        * (i.c_m * q.d_reference_force_d_h_0 + i.reference_force * d_c_m_d_h_0) + p.z_t
+        * q.d_thrust_d_h_0; // lb/ft
+    parameter.pitch_rate.h_0 = d_pitching_moment_d_h_0 * p.inv_i_yy; // rad/s^2/ft
     let d_c_d_d_h_s = p.c_d_eta_1 * q.d_eta_static_1_d_h_s
         + p.c_d_eta_2 * q.d_eta_static_2_d_h_s
         + p.c_d_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
-    let d_drag_d_h_s = i.c_d * q.d_reference_force_d_h_s
-        + i.reference_force * d_c_d_d_h_s; // lb/ft^2
+    let d_drag_d_h_s = i.c_d * q.d_reference_force_d_h_s + i.reference_force * d_c_d_d_h_s; // lb/ft^2
     let d_path_force_d_h_s = i.cos_alpha * q.d_thrust_d_h_s - d_drag_d_h_s; // lb/ft^2
-    let d_velocity_rate_d_h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
+    parameter.velocity.h_s = d_path_force_d_h_s * p.inv_m; // 1/s^2
     let d_c_m_d_h_s = p.c_m_eta_1 * q.d_eta_static_1_d_h_s
         + p.c_m_eta_2 * q.d_eta_static_2_d_h_s
         + p.c_m_eta_3 * q.d_eta_static_3_d_h_s; // 1/ft
     let d_pitching_moment_d_h_s = p.c_bar
-        * (i.c_m * q.d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s)
-        + p.z_t * q.d_thrust_d_h_s; // lb/ft
-    let d_pitch_acceleration_d_h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
+        * (i.c_m * q.d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s) + p.z_t
+        * q.d_thrust_d_h_s; // lb/ft
+    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
 
-    parameter.velocity_by_rho_0 = d_velocity_rate_d_rho_0;
-    parameter.velocity_by_h_0 = d_velocity_rate_d_h_0;
-    parameter.velocity_by_h_s = d_velocity_rate_d_h_s;
-    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_rho_0 = q.d_force_turn_d_rho_0;
-    parameter.gamma_by_h_0 = q.d_force_turn_d_h_0;
-    parameter.gamma_by_h_s = q.d_force_turn_d_h_s;
-    parameter.gamma_by_g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.gamma_by_r_e = q.d_gamma_rate_d_r_e;
-    parameter.alpha_by_rho_0 = -q.d_force_turn_d_rho_0;
-    parameter.alpha_by_h_0 = -q.d_force_turn_d_h_0;
-    parameter.alpha_by_h_s = -q.d_force_turn_d_h_s;
-    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha_by_r_e = -q.d_gamma_rate_d_r_e;
-    parameter.pitch_rate_by_rho_0 = d_pitch_acceleration_d_rho_0;
-    parameter.pitch_rate_by_h_0 = d_pitch_acceleration_d_h_0;
-    parameter.pitch_rate_by_h_s = d_pitch_acceleration_d_h_s;
+    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma.rho_0 = q.d_force_turn_d_rho_0;
+    parameter.gamma.h_0 = q.d_force_turn_d_h_0;
+    parameter.gamma.h_s = q.d_force_turn_d_h_s;
+    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.gamma.r_e = q.d_gamma_rate_d_r_e;
+    parameter.alpha.rho_0 = -q.d_force_turn_d_rho_0;
+    parameter.alpha.h_0 = -q.d_force_turn_d_h_0;
+    parameter.alpha.h_s = -q.d_force_turn_d_h_s;
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.r_e = -q.d_gamma_rate_d_r_e;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by modes.
 #[inline(always)]
 fn parameter_jacobian_by_modes<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
     // Derivatives with respect to parameters
     let d_path_force_d_omega_1 = i.reference_force * p.inv_omega_1 * i.eta_static_1
         * (R::TWO * p.c_d_eta_1 - i.cos_alpha * p.two_c_t_eta_1); // lb*s/ft/rad
-    let d_velocity_rate_d_omega_1 = d_path_force_d_omega_1 * p.inv_m; // ft/s/rad
+    parameter.velocity.omega_1 = d_path_force_d_omega_1 * p.inv_m; // ft/s/rad
     let d_normal_coefficient_d_omega_1 = -p.inv_omega_1 * i.eta_static_1
         * (i.sin_alpha * p.two_c_t_eta_1 + R::TWO * p.c_l_eta_1); // s/rad
-    let d_force_turn_d_omega_1 = i.turn_factor * d_normal_coefficient_d_omega_1;
+    parameter.gamma.omega_1 = i.turn_factor * d_normal_coefficient_d_omega_1;
     let d_pitching_moment_d_omega_1 = -p
         .two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1 * i.reference_force
         * i.eta_static_1; // lb*s/rad
-    let d_pitch_acceleration_d_omega_1 = d_pitching_moment_d_omega_1 * p.inv_i_yy; // 1/s
-    let d_chi_rate_1_d_omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
+    parameter.pitch_rate.omega_1 = d_pitching_moment_d_omega_1 * p.inv_i_yy; // 1/s
+    parameter.chi_1.omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
     let d_path_force_d_omega_2 = i.reference_force * p.inv_omega_2 * i.eta_static_2
         * (R::TWO * p.c_d_eta_2 - i.cos_alpha * p.two_c_t_eta_2); // lb*s/ft/rad
-    let d_velocity_rate_d_omega_2 = d_path_force_d_omega_2 * p.inv_m; // ft/s/rad
+    parameter.velocity.omega_2 = d_path_force_d_omega_2 * p.inv_m; // ft/s/rad
     let d_normal_coefficient_d_omega_2 = -p.inv_omega_2 * i.eta_static_2
         * (i.sin_alpha * p.two_c_t_eta_2 + R::TWO * p.c_l_eta_2); // s/rad
-    let d_force_turn_d_omega_2 = i.turn_factor * d_normal_coefficient_d_omega_2;
+    parameter.gamma.omega_2 = i.turn_factor * d_normal_coefficient_d_omega_2;
     let d_pitching_moment_d_omega_2 = -p
         .two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2 * i.reference_force
         * i.eta_static_2; // lb*s/rad
-    let d_pitch_acceleration_d_omega_2 = d_pitching_moment_d_omega_2 * p.inv_i_yy; // 1/s
-    let d_chi_rate_2_d_omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
+    parameter.pitch_rate.omega_2 = d_pitching_moment_d_omega_2 * p.inv_i_yy; // 1/s
+    parameter.chi_2.omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
     let d_path_force_d_omega_3 = i.reference_force * p.inv_omega_3 * i.eta_static_3
         * (R::TWO * p.c_d_eta_3 - i.cos_alpha * p.two_c_t_eta_3); // lb*s/ft/rad
-    let d_velocity_rate_d_omega_3 = d_path_force_d_omega_3 * p.inv_m; // ft/s/rad
+    parameter.velocity.omega_3 = d_path_force_d_omega_3 * p.inv_m; // ft/s/rad
     let d_normal_coefficient_d_omega_3 = -p.inv_omega_3 * i.eta_static_3
         * (i.sin_alpha * p.two_c_t_eta_3 + R::TWO * p.c_l_eta_3); // s/rad
-    let d_force_turn_d_omega_3 = i.turn_factor * d_normal_coefficient_d_omega_3;
+    parameter.gamma.omega_3 = i.turn_factor * d_normal_coefficient_d_omega_3;
     let d_pitching_moment_d_omega_3 = -p
         .two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3 * i.reference_force
         * i.eta_static_3; // lb*s/rad
-    let d_pitch_acceleration_d_omega_3 = d_pitching_moment_d_omega_3 * p.inv_i_yy; // 1/s
-    let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
-    let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
-    let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
-    let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
+    parameter.pitch_rate.omega_3 = d_pitching_moment_d_omega_3 * p.inv_i_yy; // 1/s
+    parameter.chi_3.omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
+    parameter.chi_1.zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
+    parameter.chi_2.zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
+    parameter.chi_3.zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
 
-    parameter.velocity_by_omega_1 = d_velocity_rate_d_omega_1;
-    parameter.velocity_by_omega_2 = d_velocity_rate_d_omega_2;
-    parameter.velocity_by_omega_3 = d_velocity_rate_d_omega_3;
-    parameter.gamma_by_omega_1 = d_force_turn_d_omega_1;
-    parameter.gamma_by_omega_2 = d_force_turn_d_omega_2;
-    parameter.gamma_by_omega_3 = d_force_turn_d_omega_3;
-    parameter.alpha_by_omega_1 = -d_force_turn_d_omega_1;
-    parameter.alpha_by_omega_2 = -d_force_turn_d_omega_2;
-    parameter.alpha_by_omega_3 = -d_force_turn_d_omega_3;
-    parameter.pitch_rate_by_omega_1 = d_pitch_acceleration_d_omega_1;
-    parameter.pitch_rate_by_omega_2 = d_pitch_acceleration_d_omega_2;
-    parameter.pitch_rate_by_omega_3 = d_pitch_acceleration_d_omega_3;
-    parameter.chi_1_by_omega_1 = d_chi_rate_1_d_omega_1;
-    parameter.chi_1_by_zeta_1 = d_chi_rate_1_d_zeta_1;
-    parameter.chi_2_by_omega_2 = d_chi_rate_2_d_omega_2;
-    parameter.chi_2_by_zeta_2 = d_chi_rate_2_d_zeta_2;
-    parameter.chi_3_by_omega_3 = d_chi_rate_3_d_omega_3;
-    parameter.chi_3_by_zeta_3 = d_chi_rate_3_d_zeta_3;
+    parameter.alpha.omega_1 = -parameter.gamma.omega_1;
+    parameter.alpha.omega_2 = -parameter.gamma.omega_2;
+    parameter.alpha.omega_3 = -parameter.gamma.omega_3;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by choices.
 #[inline(always)]
 fn parameter_jacobian_by_choices<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_c_t_d_canard_command = i.reference_force
@@ -430,25 +219,22 @@ fn parameter_jacobian_by_choices<R: Real>(
     let d_drag_d_canard_command = i.reference_force * d_c_d_d_canard_command; // lb/ft
     let d_path_force_d_canard_command = i.cos_alpha * d_thrust_d_canard_command
         - d_drag_d_canard_command; // lb/ft
-    let d_velocity_rate_d_canard_command = d_path_force_d_canard_command * p.inv_m; // ft/s^2
+    parameter.velocity.canard_command = d_path_force_d_canard_command * p.inv_m; // ft/s^2
     let d_c_l_d_canard_command = i.reference_force
         * (p.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
         + p.c_l_delta_c * u.delta_c;
-    let d_normal_coefficient_d_canard_command = i.sin_alpha * d_c_t_d_canard_command
-        + d_c_l_d_canard_command;
-    let d_force_turn_d_canard_command = i.turn_factor
-        * d_normal_coefficient_d_canard_command; // rad/s
+    let d_normal_coefficient_d_canard_command = i.sin_alpha * d_c_t_d_canard_command + d_c_l_d_canard_command;
+    parameter.gamma.canard_command = i.turn_factor * d_normal_coefficient_d_canard_command; // rad/s
     let d_c_m_d_canard_command = i.reference_force
         * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
             + p.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_c)
         + p.c_m_delta_c * u.delta_c;
-    let d_pitching_moment_d_canard_command = p.c_bar * i.reference_force
-        * d_c_m_d_canard_command + p.z_t * d_thrust_d_canard_command; // lb
-    let d_pitch_acceleration_d_canard_command = d_pitching_moment_d_canard_command
-        * p.inv_i_yy; // rad/s^2
+    let d_pitching_moment_d_canard_command = p.c_bar * i.reference_force * d_c_m_d_canard_command
+        + p.z_t * d_thrust_d_canard_command; // lb
+    parameter.pitch_rate.canard_command = d_pitching_moment_d_canard_command * p.inv_i_yy; // rad/s^2
     let d_c_t_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c * i.reference_force
         * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e;
     let d_thrust_d_canard_slaving = i.reference_force * d_c_t_d_canard_slaving; // lb/ft
@@ -461,134 +247,93 @@ fn parameter_jacobian_by_choices<R: Real>(
     let d_drag_d_canard_slaving = i.reference_force * d_c_d_d_canard_slaving; // lb/ft
     let d_path_force_d_canard_slaving = i.cos_alpha * d_thrust_d_canard_slaving
         - d_drag_d_canard_slaving; // lb/ft
-    let d_velocity_rate_d_canard_slaving = d_path_force_d_canard_slaving * p.inv_m; // ft/s^2
+    parameter.velocity.canard_slaving = d_path_force_d_canard_slaving * p.inv_m; // ft/s^2
     let d_c_l_d_canard_slaving = -p.c_l_delta_e
-        * (p.inv_c_l_delta_c * i.reference_force
-            * q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e + u.delta_e);
-    let d_normal_coefficient_d_canard_slaving = i.sin_alpha * d_c_t_d_canard_slaving
-        + d_c_l_d_canard_slaving;
-    let d_force_turn_d_canard_slaving = i.turn_factor
-        * d_normal_coefficient_d_canard_slaving; // rad/s
+        * (p.inv_c_l_delta_c * i.reference_force * q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e + u.delta_e);
+    let d_normal_coefficient_d_canard_slaving = i.sin_alpha * d_c_t_d_canard_slaving + d_c_l_d_canard_slaving;
+    parameter.gamma.canard_slaving = i.turn_factor * d_normal_coefficient_d_canard_slaving; // rad/s
     let d_c_m_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * (i.reference_force
             * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
                 + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
                 + p.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e)
             + p.c_m_delta_c * u.delta_e);
-    let d_pitching_moment_d_canard_slaving = p.c_bar * i.reference_force
-        * d_c_m_d_canard_slaving + p.z_t * d_thrust_d_canard_slaving; // lb
-    let d_pitch_acceleration_d_canard_slaving = d_pitching_moment_d_canard_slaving
-        * p.inv_i_yy; // rad/s^2
+    let d_pitching_moment_d_canard_slaving = p.c_bar * i.reference_force * d_c_m_d_canard_slaving
+        + p.z_t * d_thrust_d_canard_slaving; // lb
+    parameter.pitch_rate.canard_slaving = d_pitching_moment_d_canard_slaving * p.inv_i_yy; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
             * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_gamma_rate_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
-    let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
-    let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
+    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    parameter.chi_1.moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
+    parameter.chi_2.moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
+    parameter.chi_3.moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
 
-    parameter.velocity_by_canard_command = d_velocity_rate_d_canard_command;
-    parameter.velocity_by_canard_slaving = d_velocity_rate_d_canard_slaving;
-    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_canard_command = d_force_turn_d_canard_command;
-    parameter.gamma_by_canard_slaving = d_force_turn_d_canard_slaving;
-    parameter.gamma_by_spherical_earth = d_gamma_rate_d_spherical_earth;
-    parameter.alpha_by_canard_command = -d_force_turn_d_canard_command;
-    parameter.alpha_by_canard_slaving = -d_force_turn_d_canard_slaving;
-    parameter.alpha_by_spherical_earth = -d_gamma_rate_d_spherical_earth;
-    parameter.pitch_rate_by_canard_command = d_pitch_acceleration_d_canard_command;
-    parameter.pitch_rate_by_canard_slaving = d_pitch_acceleration_d_canard_slaving;
-    parameter.chi_1_by_moment_matching = d_chi_rate_1_d_moment_matching;
-    parameter.chi_2_by_moment_matching = d_chi_rate_2_d_moment_matching;
-    parameter.chi_3_by_moment_matching = d_chi_rate_3_d_moment_matching;
+    parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.alpha.canard_command = -parameter.gamma.canard_command;
+    parameter.alpha.canard_slaving = -parameter.gamma.canard_slaving;
+    parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_t.
 #[inline(always)]
 fn parameter_jacobian_by_c_t<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
-    parameter.velocity_by_c_t_phi_alpha_3 = i.cos_alpha * i.reference_force * u.phi
-        * i.incidence_3 * p.inv_m;
-    parameter.velocity_by_c_t_phi_alpha_2 = i.cos_alpha * i.reference_force * u.phi
-        * i.incidence_2 * p.inv_m;
-    parameter.velocity_by_c_t_phi_alpha = i.cos_alpha * i.reference_force * u.phi
-        * i.incidence * p.inv_m;
-    parameter.velocity_by_c_t_phi = i.cos_alpha * i.reference_force * u.phi * p.inv_m;
-    parameter.velocity_by_c_t_alpha_3 = i.cos_alpha * i.reference_force * i.incidence_3
-        * p.inv_m;
-    parameter.velocity_by_c_t_alpha_2 = i.cos_alpha * i.reference_force * i.incidence_2
-        * p.inv_m;
-    parameter.velocity_by_c_t_alpha = i.cos_alpha * i.reference_force * i.incidence
-        * p.inv_m;
-    parameter.velocity_by_c_t_0 = i.cos_alpha * i.reference_force * p.inv_m;
-    parameter.velocity_by_c_t_eta_1 = i.cos_alpha * i.reference_force * i.eta_1
-        * p.inv_m;
-    parameter.velocity_by_c_t_eta_2 = i.cos_alpha * i.reference_force * i.eta_2
-        * p.inv_m;
-    parameter.velocity_by_c_t_eta_3 = i.cos_alpha * i.reference_force * i.eta_3
-        * p.inv_m;
-    parameter.gamma_by_c_t_phi_alpha_3 = i.turn_factor * i.sin_alpha * u.phi
-        * i.incidence_3;
-    parameter.gamma_by_c_t_phi_alpha_2 = i.turn_factor * i.sin_alpha * u.phi
-        * i.incidence_2;
-    parameter.gamma_by_c_t_phi_alpha = i.turn_factor * i.sin_alpha * u.phi * i.incidence;
-    parameter.gamma_by_c_t_phi = i.turn_factor * i.sin_alpha * u.phi;
-    parameter.gamma_by_c_t_alpha_3 = i.turn_factor * i.sin_alpha * i.incidence_3;
-    parameter.gamma_by_c_t_alpha_2 = i.turn_factor * i.sin_alpha * i.incidence_2;
-    parameter.gamma_by_c_t_alpha = i.turn_factor * i.sin_alpha * i.incidence;
-    parameter.gamma_by_c_t_0 = i.turn_factor * i.sin_alpha;
-    parameter.gamma_by_c_t_eta_1 = i.turn_factor * i.sin_alpha * i.eta_1;
-    parameter.gamma_by_c_t_eta_2 = i.turn_factor * i.sin_alpha * i.eta_2;
-    parameter.gamma_by_c_t_eta_3 = i.turn_factor * i.sin_alpha * i.eta_3;
-    parameter.alpha_by_c_t_phi_alpha_3 = -i.turn_factor * i.sin_alpha * u.phi
-        * i.incidence_3;
-    parameter.alpha_by_c_t_phi_alpha_2 = -i.turn_factor * i.sin_alpha * u.phi
-        * i.incidence_2;
-    parameter.alpha_by_c_t_phi_alpha = -i.turn_factor * i.sin_alpha * u.phi
-        * i.incidence;
-    parameter.alpha_by_c_t_phi = -i.turn_factor * i.sin_alpha * u.phi;
-    parameter.alpha_by_c_t_alpha_3 = -i.turn_factor * i.sin_alpha * i.incidence_3;
-    parameter.alpha_by_c_t_alpha_2 = -i.turn_factor * i.sin_alpha * i.incidence_2;
-    parameter.alpha_by_c_t_alpha = -i.turn_factor * i.sin_alpha * i.incidence;
-    parameter.alpha_by_c_t_0 = -i.turn_factor * i.sin_alpha;
-    parameter.alpha_by_c_t_eta_1 = -i.turn_factor * i.sin_alpha * i.eta_1;
-    parameter.alpha_by_c_t_eta_2 = -i.turn_factor * i.sin_alpha * i.eta_2;
-    parameter.alpha_by_c_t_eta_3 = -i.turn_factor * i.sin_alpha * i.eta_3;
-    parameter.pitch_rate_by_c_t_phi_alpha_3 = p.z_t_over_i_yy * i.reference_force * u.phi
-        * i.incidence_3;
-    parameter.pitch_rate_by_c_t_phi_alpha_2 = p.z_t_over_i_yy * i.reference_force * u.phi
-        * i.incidence_2;
-    parameter.pitch_rate_by_c_t_phi_alpha = p.z_t_over_i_yy * i.reference_force * u.phi
-        * i.incidence;
-    parameter.pitch_rate_by_c_t_phi = p.z_t_over_i_yy * i.reference_force * u.phi;
-    parameter.pitch_rate_by_c_t_alpha_3 = p.z_t_over_i_yy * i.reference_force
-        * i.incidence_3;
-    parameter.pitch_rate_by_c_t_alpha_2 = p.z_t_over_i_yy * i.reference_force
-        * i.incidence_2;
-    parameter.pitch_rate_by_c_t_alpha = p.z_t_over_i_yy * i.reference_force
-        * i.incidence;
-    parameter.pitch_rate_by_c_t_0 = p.z_t_over_i_yy * i.reference_force;
-    parameter.pitch_rate_by_c_t_eta_1 = p.z_t_over_i_yy * i.reference_force * i.eta_1;
-    parameter.pitch_rate_by_c_t_eta_2 = p.z_t_over_i_yy * i.reference_force * i.eta_2;
-    parameter.pitch_rate_by_c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * i.eta_3;
+    parameter.velocity.c_t_phi_alpha_3 = i.cos_alpha * i.reference_force * u.phi * i.incidence_3 * p.inv_m;
+    parameter.velocity.c_t_phi_alpha_2 = i.cos_alpha * i.reference_force * u.phi * i.incidence_2 * p.inv_m;
+    parameter.velocity.c_t_phi_alpha = i.cos_alpha * i.reference_force * u.phi * i.incidence * p.inv_m;
+    parameter.velocity.c_t_phi = i.cos_alpha * i.reference_force * u.phi * p.inv_m;
+    parameter.velocity.c_t_alpha_3 = i.cos_alpha * i.reference_force * i.incidence_3 * p.inv_m;
+    parameter.velocity.c_t_alpha_2 = i.cos_alpha * i.reference_force * i.incidence_2 * p.inv_m;
+    parameter.velocity.c_t_alpha = i.cos_alpha * i.reference_force * i.incidence * p.inv_m;
+    parameter.velocity.c_t_0 = i.cos_alpha * i.reference_force * p.inv_m;
+    parameter.velocity.c_t_eta_1 = i.cos_alpha * i.reference_force * i.eta_1 * p.inv_m;
+    parameter.velocity.c_t_eta_2 = i.cos_alpha * i.reference_force * i.eta_2 * p.inv_m;
+    parameter.velocity.c_t_eta_3 = i.cos_alpha * i.reference_force * i.eta_3 * p.inv_m;
+    parameter.gamma.c_t_phi_alpha_3 = i.turn_factor * i.sin_alpha * u.phi * i.incidence_3;
+    parameter.gamma.c_t_phi_alpha_2 = i.turn_factor * i.sin_alpha * u.phi * i.incidence_2;
+    parameter.gamma.c_t_phi_alpha = i.turn_factor * i.sin_alpha * u.phi * i.incidence;
+    parameter.gamma.c_t_phi = i.turn_factor * i.sin_alpha * u.phi;
+    parameter.gamma.c_t_alpha_3 = i.turn_factor * i.sin_alpha * i.incidence_3;
+    parameter.gamma.c_t_alpha_2 = i.turn_factor * i.sin_alpha * i.incidence_2;
+    parameter.gamma.c_t_alpha = i.turn_factor * i.sin_alpha * i.incidence;
+    parameter.gamma.c_t_0 = i.turn_factor * i.sin_alpha;
+    parameter.gamma.c_t_eta_1 = i.turn_factor * i.sin_alpha * i.eta_1;
+    parameter.gamma.c_t_eta_2 = i.turn_factor * i.sin_alpha * i.eta_2;
+    parameter.gamma.c_t_eta_3 = i.turn_factor * i.sin_alpha * i.eta_3;
+    parameter.alpha.c_t_phi_alpha_3 = -i.turn_factor * i.sin_alpha * u.phi * i.incidence_3;
+    parameter.alpha.c_t_phi_alpha_2 = -i.turn_factor * i.sin_alpha * u.phi * i.incidence_2;
+    parameter.alpha.c_t_phi_alpha = -i.turn_factor * i.sin_alpha * u.phi * i.incidence;
+    parameter.alpha.c_t_phi = -i.turn_factor * i.sin_alpha * u.phi;
+    parameter.alpha.c_t_alpha_3 = -i.turn_factor * i.sin_alpha * i.incidence_3;
+    parameter.alpha.c_t_alpha_2 = -i.turn_factor * i.sin_alpha * i.incidence_2;
+    parameter.alpha.c_t_alpha = -i.turn_factor * i.sin_alpha * i.incidence;
+    parameter.alpha.c_t_0 = -i.turn_factor * i.sin_alpha;
+    parameter.alpha.c_t_eta_1 = -i.turn_factor * i.sin_alpha * i.eta_1;
+    parameter.alpha.c_t_eta_2 = -i.turn_factor * i.sin_alpha * i.eta_2;
+    parameter.alpha.c_t_eta_3 = -i.turn_factor * i.sin_alpha * i.eta_3;
+    parameter.pitch_rate.c_t_phi_alpha_3 = p.z_t_over_i_yy * i.reference_force * u.phi * i.incidence_3;
+    parameter.pitch_rate.c_t_phi_alpha_2 = p.z_t_over_i_yy * i.reference_force * u.phi * i.incidence_2;
+    parameter.pitch_rate.c_t_phi_alpha = p.z_t_over_i_yy * i.reference_force * u.phi * i.incidence;
+    parameter.pitch_rate.c_t_phi = p.z_t_over_i_yy * i.reference_force * u.phi;
+    parameter.pitch_rate.c_t_alpha_3 = p.z_t_over_i_yy * i.reference_force * i.incidence_3;
+    parameter.pitch_rate.c_t_alpha_2 = p.z_t_over_i_yy * i.reference_force * i.incidence_2;
+    parameter.pitch_rate.c_t_alpha = p.z_t_over_i_yy * i.reference_force * i.incidence;
+    parameter.pitch_rate.c_t_0 = p.z_t_over_i_yy * i.reference_force;
+    parameter.pitch_rate.c_t_eta_1 = p.z_t_over_i_yy * i.reference_force * i.eta_1;
+    parameter.pitch_rate.c_t_eta_2 = p.z_t_over_i_yy * i.reference_force * i.eta_2;
+    parameter.pitch_rate.c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * i.eta_3;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
 #[inline(always)]
 fn parameter_jacobian_by_c_l_c_d<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
@@ -600,12 +345,10 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
             + p.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 * u.delta_e
             + p.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 * u.delta_e)
         + s.slope_of_c_d_in_canard_deflection * u.delta_e;
-    let d_c_d_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * d_c_d_d_c_l_delta_e_term_1; // rad
+    let d_c_d_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * d_c_d_d_c_l_delta_e_term_1; // rad
     let d_drag_d_c_l_delta_e = i.reference_force * d_c_d_d_c_l_delta_e; // lb*rad/ft
-    let d_path_force_d_c_l_delta_e = i.cos_alpha * d_thrust_d_c_l_delta_e
-        - d_drag_d_c_l_delta_e; // lb*rad/ft
-    let d_velocity_rate_d_c_l_delta_e = d_path_force_d_c_l_delta_e * p.inv_m; // ft*rad/s^2
+    let d_path_force_d_c_l_delta_e = i.cos_alpha * d_thrust_d_c_l_delta_e - d_drag_d_c_l_delta_e; // lb*rad/ft
+    parameter.velocity.c_l_delta_e = d_path_force_d_c_l_delta_e * p.inv_m; // ft*rad/s^2
     let d_c_l_d_c_l_delta_e = p.canard_slaving_over_c_l_delta_c * i.reference_force
         * (-q.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2_delta_e
             - q.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2_delta_e
@@ -613,354 +356,249 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
         + u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     let d_normal_coefficient_d_c_l_delta_e = i.sin_alpha * d_c_t_d_c_l_delta_e
         + d_c_l_d_c_l_delta_e; // rad
-    let d_force_turn_d_c_l_delta_e = i.turn_factor * d_normal_coefficient_d_c_l_delta_e; // rad^2/s
+    parameter.gamma.c_l_delta_e = i.turn_factor * d_normal_coefficient_d_c_l_delta_e; // rad^2/s
     let d_c_m_d_c_l_delta_e_term_1 = i.reference_force
         * (p.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_e
             + p.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_e
             + p.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 * u.delta_e)
         + p.c_m_delta_c * u.delta_e;
-    let d_c_m_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * d_c_m_d_c_l_delta_e_term_1; // rad
-    let d_pitching_moment_d_c_l_delta_e = p.c_bar * i.reference_force
-        * d_c_m_d_c_l_delta_e + p.z_t * d_thrust_d_c_l_delta_e; // lb*rad
-    let d_pitch_acceleration_d_c_l_delta_e = d_pitching_moment_d_c_l_delta_e
-        * p.inv_i_yy; // rad^2/s^2
-    let d_c_t_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * i.reference_force * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
+    let d_c_m_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * d_c_m_d_c_l_delta_e_term_1; // rad
+    let d_pitching_moment_d_c_l_delta_e = p.c_bar * i.reference_force * d_c_m_d_c_l_delta_e
+        + p.z_t * d_thrust_d_c_l_delta_e; // lb*rad
+    parameter.pitch_rate.c_l_delta_e = d_pitching_moment_d_c_l_delta_e * p.inv_i_yy; // rad^2/s^2
+    let d_c_t_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 * i.reference_force
+        * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_c = i.reference_force * d_c_t_d_c_l_delta_c; // lb*rad/ft
     let d_c_d_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_d_d_c_l_delta_e_term_1; // rad
     let d_drag_d_c_l_delta_c = i.reference_force * d_c_d_d_c_l_delta_c; // lb*rad/ft
-    let d_path_force_d_c_l_delta_c = i.cos_alpha * d_thrust_d_c_l_delta_c
-        - d_drag_d_c_l_delta_c; // lb*rad/ft
-    let d_velocity_rate_d_c_l_delta_c = d_path_force_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
-    let d_c_l_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
-        * i.reference_force * q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e
-        + i.canard_commanded; // rad
+    let d_path_force_d_c_l_delta_c = i.cos_alpha * d_thrust_d_c_l_delta_c - d_drag_d_c_l_delta_c; // lb*rad/ft
+    parameter.velocity.c_l_delta_c = d_path_force_d_c_l_delta_c * p.inv_m; // ft*rad/s^2
+    let d_c_l_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 * i.reference_force
+        * q.sum_of_c_l_eta_c_n_delta_c_inv_omega_2_delta_e + i.canard_commanded; // rad
     let d_normal_coefficient_d_c_l_delta_c = i.sin_alpha * d_c_t_d_c_l_delta_c
         + d_c_l_d_c_l_delta_c; // rad
-    let d_force_turn_d_c_l_delta_c = i.turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
+    parameter.gamma.c_l_delta_c = i.turn_factor * d_normal_coefficient_d_c_l_delta_c; // rad^2/s
     let d_c_m_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * d_c_m_d_c_l_delta_e_term_1; // rad
-    let d_pitching_moment_d_c_l_delta_c = p.c_bar * i.reference_force
-        * d_c_m_d_c_l_delta_c + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
-    let d_pitch_acceleration_d_c_l_delta_c = d_pitching_moment_d_c_l_delta_c
-        * p.inv_i_yy; // rad^2/s^2
+    let d_pitching_moment_d_c_l_delta_c = p.c_bar * i.reference_force * d_c_m_d_c_l_delta_c
+        + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
+    parameter.pitch_rate.c_l_delta_c = d_pitching_moment_d_c_l_delta_c * p.inv_i_yy; // rad^2/s^2
 
-    parameter.velocity_by_c_l_delta_e = d_velocity_rate_d_c_l_delta_e;
-    parameter.velocity_by_c_l_delta_c = d_velocity_rate_d_c_l_delta_c;
-    parameter.gamma_by_c_l_alpha = i.turn_factor * i.incidence;
-    parameter.gamma_by_c_l_delta_e = d_force_turn_d_c_l_delta_e;
-    parameter.gamma_by_c_l_delta_c = d_force_turn_d_c_l_delta_c;
-    parameter.gamma_by_c_l_0 = i.turn_factor;
-    parameter.gamma_by_c_l_eta_1 = i.turn_factor * i.eta_1;
-    parameter.gamma_by_c_l_eta_2 = i.turn_factor * i.eta_2;
-    parameter.gamma_by_c_l_eta_3 = i.turn_factor * i.eta_3;
-    parameter.alpha_by_c_l_alpha = -i.turn_factor * i.incidence;
-    parameter.alpha_by_c_l_delta_e = -d_force_turn_d_c_l_delta_e;
-    parameter.alpha_by_c_l_delta_c = -d_force_turn_d_c_l_delta_c;
-    parameter.alpha_by_c_l_0 = -i.turn_factor;
-    parameter.alpha_by_c_l_eta_1 = -i.turn_factor * i.eta_1;
-    parameter.alpha_by_c_l_eta_2 = -i.turn_factor * i.eta_2;
-    parameter.alpha_by_c_l_eta_3 = -i.turn_factor * i.eta_3;
-    parameter.pitch_rate_by_c_l_delta_e = d_pitch_acceleration_d_c_l_delta_e;
-    parameter.pitch_rate_by_c_l_delta_c = d_pitch_acceleration_d_c_l_delta_c;
-    parameter.velocity_by_c_d_alpha_2 = -i.reference_force * i.incidence_2 * p.inv_m;
-    parameter.velocity_by_c_d_alpha = -i.reference_force * i.incidence * p.inv_m;
-    parameter.velocity_by_c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
-    parameter.velocity_by_c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
-    parameter.velocity_by_c_d_delta_c_2 = -i.reference_force * i.canard_deflection_2
-        * p.inv_m;
-    parameter.velocity_by_c_d_delta_c = -i.reference_force * i.canard_deflection
-        * p.inv_m;
-    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
-    parameter.velocity_by_c_d_eta_1 = -i.reference_force * i.eta_1 * p.inv_m;
-    parameter.velocity_by_c_d_eta_2 = -i.reference_force * i.eta_2 * p.inv_m;
-    parameter.velocity_by_c_d_eta_3 = -i.reference_force * i.eta_3 * p.inv_m;
+    parameter.gamma.c_l_alpha = i.turn_factor * i.incidence;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.gamma.c_l_eta_1 = i.turn_factor * i.eta_1;
+    parameter.gamma.c_l_eta_2 = i.turn_factor * i.eta_2;
+    parameter.gamma.c_l_eta_3 = i.turn_factor * i.eta_3;
+    parameter.alpha.c_l_alpha = -i.turn_factor * i.incidence;
+    parameter.alpha.c_l_delta_e = -parameter.gamma.c_l_delta_e;
+    parameter.alpha.c_l_delta_c = -parameter.gamma.c_l_delta_c;
+    parameter.alpha.c_l_0 = -i.turn_factor;
+    parameter.alpha.c_l_eta_1 = -i.turn_factor * i.eta_1;
+    parameter.alpha.c_l_eta_2 = -i.turn_factor * i.eta_2;
+    parameter.alpha.c_l_eta_3 = -i.turn_factor * i.eta_3;
+    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.incidence_2 * p.inv_m;
+    parameter.velocity.c_d_alpha = -i.reference_force * i.incidence * p.inv_m;
+    parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
+    parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
+    parameter.velocity.c_d_delta_c_2 = -i.reference_force * i.canard_deflection_2 * p.inv_m;
+    parameter.velocity.c_d_delta_c = -i.reference_force * i.canard_deflection * p.inv_m;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+    parameter.velocity.c_d_eta_1 = -i.reference_force * i.eta_1 * p.inv_m;
+    parameter.velocity.c_d_eta_2 = -i.reference_force * i.eta_2 * p.inv_m;
+    parameter.velocity.c_d_eta_3 = -i.reference_force * i.eta_3 * p.inv_m;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_1<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = s.cos_alpha_c_t_eta_1 - p.c_d_eta_1;
-    let d_path_force_d_c_n_1_alpha_2 = q.reference_force_2 * p.inv_omega_1_2
-        * i.incidence_2 * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad^2/ft^1.5
-    let d_velocity_rate_d_c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * i.reference_force
-        * i.incidence_2 * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_1_alpha_2 = i.turn_factor
-        * d_normal_coefficient_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_alpha_2 = p
-        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * q.reference_force_2
-        * i.incidence_2; // lb*slug^0.5*rad^2/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_alpha_2 = d_pitching_moment_d_c_n_1_alpha_2
-        * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_1_alpha_2 = q.reference_force_2 * p.inv_omega_1_2 * i.incidence_2
+        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad^2/ft^1.5
+    parameter.velocity.c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_normal_coefficient_d_c_n_1_alpha_2 = p.inv_omega_1_2 * i.reference_force * i.incidence_2
+        * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad^2/ft^0.5
+    parameter.gamma.c_n_1_alpha_2 = i.turn_factor * d_normal_coefficient_d_c_n_1_alpha_2; // rad^3*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_alpha_2 = p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2
+        * q.reference_force_2 * i.incidence_2; // lb*slug^0.5*rad^2/ft^0.5
+    parameter.pitch_rate.c_n_1_alpha_2 = d_pitching_moment_d_c_n_1_alpha_2 * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_alpha = q.reference_force_2 * p.inv_omega_1_2 * i.incidence
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_1_alpha = d_path_force_d_c_n_1_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * i.reference_force
-        * i.incidence * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_alpha = i.turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_alpha = p
-        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * q.reference_force_2
-        * i.incidence; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_alpha = d_pitching_moment_d_c_n_1_alpha
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_1_alpha = d_path_force_d_c_n_1_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let d_normal_coefficient_d_c_n_1_alpha = p.inv_omega_1_2 * i.reference_force * i.incidence
+        * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
+    parameter.gamma.c_n_1_alpha = i.turn_factor * d_normal_coefficient_d_c_n_1_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_alpha = p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2
+        * q.reference_force_2 * i.incidence; // lb*slug^0.5*rad/ft^0.5
+    parameter.pitch_rate.c_n_1_alpha = d_pitching_moment_d_c_n_1_alpha * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_delta_e = q.reference_force_2 * p.inv_omega_1_2
         * (i.cos_alpha * p.c_t_eta_1 * u.delta_e - p.c_d_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_1_delta_e = d_path_force_d_c_n_1_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    parameter.velocity.c_n_1_delta_e = d_path_force_d_c_n_1_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_1_delta_e = p.inv_omega_1_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_1 * u.delta_e + p.c_l_eta_1 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_delta_e = i.turn_factor
-        * d_normal_coefficient_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
+    parameter.gamma.c_n_1_delta_e = i.turn_factor * d_normal_coefficient_d_c_n_1_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_1_delta_e = p.inv_omega_1_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_1 * u.delta_e + p.z_t_c_t_eta_1 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_1_delta_c = q.reference_force_2 * p.inv_omega_1_2
-        * i.canard_deflection * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    parameter.pitch_rate.c_n_1_delta_e = d_pitching_moment_d_c_n_1_delta_e * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_1_delta_c = q.reference_force_2 * p.inv_omega_1_2 * i.canard_deflection
+        * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad/ft^1.5
+    parameter.velocity.c_n_1_delta_c = d_path_force_d_c_n_1_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_1_delta_c = p.inv_omega_1_2 * i.reference_force
         * i.canard_deflection * s.d_normal_coefficient_d_chi_1; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_1_delta_c = i.turn_factor
-        * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_delta_c = p
-        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * q.reference_force_2
-        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_1_delta_c = i.turn_factor * d_normal_coefficient_d_c_n_1_delta_c; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_delta_c = p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2
+        * q.reference_force_2 * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
+    parameter.pitch_rate.c_n_1_delta_c = d_pitching_moment_d_c_n_1_delta_c * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_1_0 = q.reference_force_2 * p.inv_omega_1_2
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // (ft*slug)^0.5/s^2
+    parameter.velocity.c_n_1_0 = d_path_force_d_c_n_1_0 * p.inv_m; // (ft*slug)^0.5/s^2
     let d_normal_coefficient_d_c_n_1_0 = p.inv_omega_1_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_1; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_1_0 = i.turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_1_0 = p
-        .c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 * q.reference_force_2; // lb*slug^0.5/ft^0.5
-    let d_pitch_acceleration_d_c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_1_0 = i.turn_factor * d_normal_coefficient_d_c_n_1_0; // rad*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_1_0 = p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2
+        * q.reference_force_2; // lb*slug^0.5/ft^0.5
+    parameter.pitch_rate.c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
 
-    parameter.velocity_by_c_n_1_alpha_2 = d_velocity_rate_d_c_n_1_alpha_2;
-    parameter.velocity_by_c_n_1_alpha = d_velocity_rate_d_c_n_1_alpha;
-    parameter.velocity_by_c_n_1_delta_e = d_velocity_rate_d_c_n_1_delta_e;
-    parameter.velocity_by_c_n_1_delta_c = d_velocity_rate_d_c_n_1_delta_c;
-    parameter.velocity_by_c_n_1_0 = d_velocity_rate_d_c_n_1_0;
-    parameter.gamma_by_c_n_1_alpha_2 = d_force_turn_d_c_n_1_alpha_2;
-    parameter.gamma_by_c_n_1_alpha = d_force_turn_d_c_n_1_alpha;
-    parameter.gamma_by_c_n_1_delta_e = d_force_turn_d_c_n_1_delta_e;
-    parameter.gamma_by_c_n_1_delta_c = d_force_turn_d_c_n_1_delta_c;
-    parameter.gamma_by_c_n_1_0 = d_force_turn_d_c_n_1_0;
-    parameter.alpha_by_c_n_1_alpha_2 = -d_force_turn_d_c_n_1_alpha_2;
-    parameter.alpha_by_c_n_1_alpha = -d_force_turn_d_c_n_1_alpha;
-    parameter.alpha_by_c_n_1_delta_e = -d_force_turn_d_c_n_1_delta_e;
-    parameter.alpha_by_c_n_1_delta_c = -d_force_turn_d_c_n_1_delta_c;
-    parameter.alpha_by_c_n_1_0 = -d_force_turn_d_c_n_1_0;
-    parameter.pitch_rate_by_c_n_1_alpha_2 = d_pitch_acceleration_d_c_n_1_alpha_2;
-    parameter.pitch_rate_by_c_n_1_alpha = d_pitch_acceleration_d_c_n_1_alpha;
-    parameter.pitch_rate_by_c_n_1_delta_e = d_pitch_acceleration_d_c_n_1_delta_e;
-    parameter.pitch_rate_by_c_n_1_delta_c = d_pitch_acceleration_d_c_n_1_delta_c;
-    parameter.pitch_rate_by_c_n_1_0 = d_pitch_acceleration_d_c_n_1_0;
+    parameter.alpha.c_n_1_alpha_2 = -parameter.gamma.c_n_1_alpha_2;
+    parameter.alpha.c_n_1_alpha = -parameter.gamma.c_n_1_alpha;
+    parameter.alpha.c_n_1_delta_e = -parameter.gamma.c_n_1_delta_e;
+    parameter.alpha.c_n_1_delta_c = -parameter.gamma.c_n_1_delta_c;
+    parameter.alpha.c_n_1_0 = -parameter.gamma.c_n_1_0;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_n_2.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_2<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = s.cos_alpha_c_t_eta_2 - p.c_d_eta_2;
-    let d_path_force_d_c_n_2_alpha_2 = q.reference_force_2 * p.inv_omega_2_2
-        * i.incidence_2 * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad^2/ft^1.5
-    let d_velocity_rate_d_c_n_2_alpha_2 = d_path_force_d_c_n_2_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_2_alpha_2 = p.inv_omega_2_2 * i.reference_force
-        * i.incidence_2 * s.d_normal_coefficient_d_chi_2; // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_2_alpha_2 = i.turn_factor
-        * d_normal_coefficient_d_c_n_2_alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_alpha_2 = p
-        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * q.reference_force_2
-        * i.incidence_2; // lb*slug^0.5*rad^2/ft^0.5
-    let d_pitch_acceleration_d_c_n_2_alpha_2 = d_pitching_moment_d_c_n_2_alpha_2
-        * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_2_alpha_2 = q.reference_force_2 * p.inv_omega_2_2 * i.incidence_2
+        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad^2/ft^1.5
+    parameter.velocity.c_n_2_alpha_2 = d_path_force_d_c_n_2_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_normal_coefficient_d_c_n_2_alpha_2 = p.inv_omega_2_2 * i.reference_force * i.incidence_2
+        * s.d_normal_coefficient_d_chi_2; // slug^0.5*rad^2/ft^0.5
+    parameter.gamma.c_n_2_alpha_2 = i.turn_factor * d_normal_coefficient_d_c_n_2_alpha_2; // rad^3*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_2_alpha_2 = p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2
+        * q.reference_force_2 * i.incidence_2; // lb*slug^0.5*rad^2/ft^0.5
+    parameter.pitch_rate.c_n_2_alpha_2 = d_pitching_moment_d_c_n_2_alpha_2 * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_alpha = q.reference_force_2 * p.inv_omega_2_2 * i.incidence
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_2_alpha = d_path_force_d_c_n_2_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_2_alpha = p.inv_omega_2_2 * i.reference_force
-        * i.incidence * s.d_normal_coefficient_d_chi_2; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_2_alpha = i.turn_factor * d_normal_coefficient_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_alpha = p
-        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * q.reference_force_2
-        * i.incidence; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_2_alpha = d_pitching_moment_d_c_n_2_alpha
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_2_alpha = d_path_force_d_c_n_2_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let d_normal_coefficient_d_c_n_2_alpha = p.inv_omega_2_2 * i.reference_force * i.incidence
+        * s.d_normal_coefficient_d_chi_2; // slug^0.5*rad/ft^0.5
+    parameter.gamma.c_n_2_alpha = i.turn_factor * d_normal_coefficient_d_c_n_2_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_2_alpha = p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2
+        * q.reference_force_2 * i.incidence; // lb*slug^0.5*rad/ft^0.5
+    parameter.pitch_rate.c_n_2_alpha = d_pitching_moment_d_c_n_2_alpha * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_delta_e = q.reference_force_2 * p.inv_omega_2_2
         * (i.cos_alpha * p.c_t_eta_2 * u.delta_e - p.c_d_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_2_delta_e = d_path_force_d_c_n_2_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    parameter.velocity.c_n_2_delta_e = d_path_force_d_c_n_2_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_2_delta_e = p.inv_omega_2_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_2 * u.delta_e + p.c_l_eta_2 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_2_delta_e = i.turn_factor
-        * d_normal_coefficient_d_c_n_2_delta_e; // rad^2*slug^0.5/s/ft^0.5
+    parameter.gamma.c_n_2_delta_e = i.turn_factor * d_normal_coefficient_d_c_n_2_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_2_delta_e = p.inv_omega_2_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_2 * u.delta_e + p.z_t_c_t_eta_2 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_2_delta_e = d_pitching_moment_d_c_n_2_delta_e
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_2_delta_c = q.reference_force_2 * p.inv_omega_2_2
-        * i.canard_deflection * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_2_delta_c = d_path_force_d_c_n_2_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    parameter.pitch_rate.c_n_2_delta_e = d_pitching_moment_d_c_n_2_delta_e * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_2_delta_c = q.reference_force_2 * p.inv_omega_2_2 * i.canard_deflection
+        * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad/ft^1.5
+    parameter.velocity.c_n_2_delta_c = d_path_force_d_c_n_2_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_2_delta_c = p.inv_omega_2_2 * i.reference_force
         * i.canard_deflection * s.d_normal_coefficient_d_chi_2; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_2_delta_c = i.turn_factor
-        * d_normal_coefficient_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_delta_c = p
-        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * q.reference_force_2
-        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_2_delta_c = d_pitching_moment_d_c_n_2_delta_c
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_2_delta_c = i.turn_factor * d_normal_coefficient_d_c_n_2_delta_c; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_2_delta_c = p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2
+        * q.reference_force_2 * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
+    parameter.pitch_rate.c_n_2_delta_c = d_pitching_moment_d_c_n_2_delta_c * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_2_0 = q.reference_force_2 * p.inv_omega_2_2
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // (ft*slug)^0.5/s^2
+    parameter.velocity.c_n_2_0 = d_path_force_d_c_n_2_0 * p.inv_m; // (ft*slug)^0.5/s^2
     let d_normal_coefficient_d_c_n_2_0 = p.inv_omega_2_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_2; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_2_0 = i.turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_2_0 = p
-        .c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 * q.reference_force_2; // lb*slug^0.5/ft^0.5
-    let d_pitch_acceleration_d_c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_2_0 = i.turn_factor * d_normal_coefficient_d_c_n_2_0; // rad*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_2_0 = p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2
+        * q.reference_force_2; // lb*slug^0.5/ft^0.5
+    parameter.pitch_rate.c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
 
-    parameter.velocity_by_c_n_2_alpha_2 = d_velocity_rate_d_c_n_2_alpha_2;
-    parameter.velocity_by_c_n_2_alpha = d_velocity_rate_d_c_n_2_alpha;
-    parameter.velocity_by_c_n_2_delta_e = d_velocity_rate_d_c_n_2_delta_e;
-    parameter.velocity_by_c_n_2_delta_c = d_velocity_rate_d_c_n_2_delta_c;
-    parameter.velocity_by_c_n_2_0 = d_velocity_rate_d_c_n_2_0;
-    parameter.gamma_by_c_n_2_alpha_2 = d_force_turn_d_c_n_2_alpha_2;
-    parameter.gamma_by_c_n_2_alpha = d_force_turn_d_c_n_2_alpha;
-    parameter.gamma_by_c_n_2_delta_e = d_force_turn_d_c_n_2_delta_e;
-    parameter.gamma_by_c_n_2_delta_c = d_force_turn_d_c_n_2_delta_c;
-    parameter.gamma_by_c_n_2_0 = d_force_turn_d_c_n_2_0;
-    parameter.alpha_by_c_n_2_alpha_2 = -d_force_turn_d_c_n_2_alpha_2;
-    parameter.alpha_by_c_n_2_alpha = -d_force_turn_d_c_n_2_alpha;
-    parameter.alpha_by_c_n_2_delta_e = -d_force_turn_d_c_n_2_delta_e;
-    parameter.alpha_by_c_n_2_delta_c = -d_force_turn_d_c_n_2_delta_c;
-    parameter.alpha_by_c_n_2_0 = -d_force_turn_d_c_n_2_0;
-    parameter.pitch_rate_by_c_n_2_alpha_2 = d_pitch_acceleration_d_c_n_2_alpha_2;
-    parameter.pitch_rate_by_c_n_2_alpha = d_pitch_acceleration_d_c_n_2_alpha;
-    parameter.pitch_rate_by_c_n_2_delta_e = d_pitch_acceleration_d_c_n_2_delta_e;
-    parameter.pitch_rate_by_c_n_2_delta_c = d_pitch_acceleration_d_c_n_2_delta_c;
-    parameter.pitch_rate_by_c_n_2_0 = d_pitch_acceleration_d_c_n_2_0;
+    parameter.alpha.c_n_2_alpha_2 = -parameter.gamma.c_n_2_alpha_2;
+    parameter.alpha.c_n_2_alpha = -parameter.gamma.c_n_2_alpha;
+    parameter.alpha.c_n_2_delta_e = -parameter.gamma.c_n_2_delta_e;
+    parameter.alpha.c_n_2_delta_c = -parameter.gamma.c_n_2_delta_c;
+    parameter.alpha.c_n_2_0 = -parameter.gamma.c_n_2_0;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m, noise.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_3_to_noise<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = s.cos_alpha_c_t_eta_3 - p.c_d_eta_3;
-    let d_path_force_d_c_n_3_alpha_2 = q.reference_force_2 * p.inv_omega_3_2
-        * i.incidence_2 * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad^2/ft^1.5
-    let d_velocity_rate_d_c_n_3_alpha_2 = d_path_force_d_c_n_3_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_normal_coefficient_d_c_n_3_alpha_2 = p.inv_omega_3_2 * i.reference_force
-        * i.incidence_2 * s.d_normal_coefficient_d_chi_3; // slug^0.5*rad^2/ft^0.5
-    let d_force_turn_d_c_n_3_alpha_2 = i.turn_factor
-        * d_normal_coefficient_d_c_n_3_alpha_2; // rad^3*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_alpha_2 = p
-        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * q.reference_force_2
-        * i.incidence_2; // lb*slug^0.5*rad^2/ft^0.5
-    let d_pitch_acceleration_d_c_n_3_alpha_2 = d_pitching_moment_d_c_n_3_alpha_2
-        * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_3_alpha_2 = q.reference_force_2 * p.inv_omega_3_2 * i.incidence_2
+        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad^2/ft^1.5
+    parameter.velocity.c_n_3_alpha_2 = d_path_force_d_c_n_3_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
+    let d_normal_coefficient_d_c_n_3_alpha_2 = p.inv_omega_3_2 * i.reference_force * i.incidence_2
+        * s.d_normal_coefficient_d_chi_3; // slug^0.5*rad^2/ft^0.5
+    parameter.gamma.c_n_3_alpha_2 = i.turn_factor * d_normal_coefficient_d_c_n_3_alpha_2; // rad^3*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_3_alpha_2 = p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2
+        * q.reference_force_2 * i.incidence_2; // lb*slug^0.5*rad^2/ft^0.5
+    parameter.pitch_rate.c_n_3_alpha_2 = d_pitching_moment_d_c_n_3_alpha_2 * p.inv_i_yy; // rad^3*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_alpha = q.reference_force_2 * p.inv_omega_3_2 * i.incidence
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_3_alpha = d_path_force_d_c_n_3_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
-    let d_normal_coefficient_d_c_n_3_alpha = p.inv_omega_3_2 * i.reference_force
-        * i.incidence * s.d_normal_coefficient_d_chi_3; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_3_alpha = i.turn_factor * d_normal_coefficient_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_alpha = p
-        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * q.reference_force_2
-        * i.incidence; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_3_alpha = d_pitching_moment_d_c_n_3_alpha
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_3_alpha = d_path_force_d_c_n_3_alpha * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    let d_normal_coefficient_d_c_n_3_alpha = p.inv_omega_3_2 * i.reference_force * i.incidence
+        * s.d_normal_coefficient_d_chi_3; // slug^0.5*rad/ft^0.5
+    parameter.gamma.c_n_3_alpha = i.turn_factor * d_normal_coefficient_d_c_n_3_alpha; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_3_alpha = p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2
+        * q.reference_force_2 * i.incidence; // lb*slug^0.5*rad/ft^0.5
+    parameter.pitch_rate.c_n_3_alpha = d_pitching_moment_d_c_n_3_alpha * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_delta_e = q.reference_force_2 * p.inv_omega_3_2
         * (i.cos_alpha * p.c_t_eta_3 * u.delta_e - p.c_d_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_3_delta_e = d_path_force_d_c_n_3_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    parameter.velocity.c_n_3_delta_e = d_path_force_d_c_n_3_delta_e * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_3_delta_e = p.inv_omega_3_2 * i.reference_force
         * (i.sin_alpha * p.c_t_eta_3 * u.delta_e + p.c_l_eta_3 * u.delta_e); // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_3_delta_e = i.turn_factor
-        * d_normal_coefficient_d_c_n_3_delta_e; // rad^2*slug^0.5/s/ft^0.5
+    parameter.gamma.c_n_3_delta_e = i.turn_factor * d_normal_coefficient_d_c_n_3_delta_e; // rad^2*slug^0.5/s/ft^0.5
     let d_pitching_moment_d_c_n_3_delta_e = p.inv_omega_3_2 * q.reference_force_2
         * (p.c_bar_c_m_eta_3 * u.delta_e + p.z_t_c_t_eta_3 * u.delta_e); // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_3_delta_e = d_pitching_moment_d_c_n_3_delta_e
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_path_force_d_c_n_3_delta_c = q.reference_force_2 * p.inv_omega_3_2
-        * i.canard_deflection * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
-    let d_velocity_rate_d_c_n_3_delta_c = d_path_force_d_c_n_3_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
+    parameter.pitch_rate.c_n_3_delta_e = d_pitching_moment_d_c_n_3_delta_e * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    let d_path_force_d_c_n_3_delta_c = q.reference_force_2 * p.inv_omega_3_2 * i.canard_deflection
+        * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad/ft^1.5
+    parameter.velocity.c_n_3_delta_c = d_path_force_d_c_n_3_delta_c * p.inv_m; // ft^0.5*slug^0.5*rad/s^2
     let d_normal_coefficient_d_c_n_3_delta_c = p.inv_omega_3_2 * i.reference_force
         * i.canard_deflection * s.d_normal_coefficient_d_chi_3; // slug^0.5*rad/ft^0.5
-    let d_force_turn_d_c_n_3_delta_c = i.turn_factor
-        * d_normal_coefficient_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_delta_c = p
-        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * q.reference_force_2
-        * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
-    let d_pitch_acceleration_d_c_n_3_delta_c = d_pitching_moment_d_c_n_3_delta_c
-        * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_3_delta_c = i.turn_factor * d_normal_coefficient_d_c_n_3_delta_c; // rad^2*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_3_delta_c = p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2
+        * q.reference_force_2 * i.canard_deflection; // lb*slug^0.5*rad/ft^0.5
+    parameter.pitch_rate.c_n_3_delta_c = d_pitching_moment_d_c_n_3_delta_c * p.inv_i_yy; // rad^2*slug^0.5/s^2/ft^0.5
     let d_path_force_d_c_n_3_0 = q.reference_force_2 * p.inv_omega_3_2
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5/ft^1.5
-    let d_velocity_rate_d_c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // (ft*slug)^0.5/s^2
+    parameter.velocity.c_n_3_0 = d_path_force_d_c_n_3_0 * p.inv_m; // (ft*slug)^0.5/s^2
     let d_normal_coefficient_d_c_n_3_0 = p.inv_omega_3_2 * i.reference_force
         * s.d_normal_coefficient_d_chi_3; // slug^0.5/ft^0.5
-    let d_force_turn_d_c_n_3_0 = i.turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
-    let d_pitching_moment_d_c_n_3_0 = p
-        .c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 * q.reference_force_2; // lb*slug^0.5/ft^0.5
-    let d_pitch_acceleration_d_c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_3_0 = i.turn_factor * d_normal_coefficient_d_c_n_3_0; // rad*slug^0.5/s/ft^0.5
+    let d_pitching_moment_d_c_n_3_0 = p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2
+        * q.reference_force_2; // lb*slug^0.5/ft^0.5
+    parameter.pitch_rate.c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
 
-    parameter.velocity_by_c_n_3_alpha_2 = d_velocity_rate_d_c_n_3_alpha_2;
-    parameter.velocity_by_c_n_3_alpha = d_velocity_rate_d_c_n_3_alpha;
-    parameter.velocity_by_c_n_3_delta_e = d_velocity_rate_d_c_n_3_delta_e;
-    parameter.velocity_by_c_n_3_delta_c = d_velocity_rate_d_c_n_3_delta_c;
-    parameter.velocity_by_c_n_3_0 = d_velocity_rate_d_c_n_3_0;
-    parameter.gamma_by_c_n_3_alpha_2 = d_force_turn_d_c_n_3_alpha_2;
-    parameter.gamma_by_c_n_3_alpha = d_force_turn_d_c_n_3_alpha;
-    parameter.gamma_by_c_n_3_delta_e = d_force_turn_d_c_n_3_delta_e;
-    parameter.gamma_by_c_n_3_delta_c = d_force_turn_d_c_n_3_delta_c;
-    parameter.gamma_by_c_n_3_0 = d_force_turn_d_c_n_3_0;
-    parameter.alpha_by_c_n_3_alpha_2 = -d_force_turn_d_c_n_3_alpha_2;
-    parameter.alpha_by_c_n_3_alpha = -d_force_turn_d_c_n_3_alpha;
-    parameter.alpha_by_c_n_3_delta_e = -d_force_turn_d_c_n_3_delta_e;
-    parameter.alpha_by_c_n_3_delta_c = -d_force_turn_d_c_n_3_delta_c;
-    parameter.alpha_by_c_n_3_0 = -d_force_turn_d_c_n_3_0;
-    parameter.pitch_rate_by_c_n_3_alpha_2 = d_pitch_acceleration_d_c_n_3_alpha_2;
-    parameter.pitch_rate_by_c_n_3_alpha = d_pitch_acceleration_d_c_n_3_alpha;
-    parameter.pitch_rate_by_c_n_3_delta_e = d_pitch_acceleration_d_c_n_3_delta_e;
-    parameter.pitch_rate_by_c_n_3_delta_c = d_pitch_acceleration_d_c_n_3_delta_c;
-    parameter.pitch_rate_by_c_n_3_0 = d_pitch_acceleration_d_c_n_3_0;
-    parameter.pitch_rate_by_c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force
-        * i.incidence_2;
-    parameter.pitch_rate_by_c_m_alpha = p.c_bar_over_i_yy * i.reference_force
-        * i.incidence;
-    parameter.pitch_rate_by_c_m_delta_e = p.c_bar_over_i_yy * i.reference_force
-        * u.delta_e;
-    parameter.pitch_rate_by_c_m_delta_c = p.c_bar_over_i_yy * i.reference_force
-        * i.canard_deflection;
-    parameter.pitch_rate_by_c_m_0 = p.c_bar_over_i_yy * i.reference_force;
-    parameter.pitch_rate_by_c_m_eta_1 = p.c_bar_over_i_yy * i.reference_force * i.eta_1;
-    parameter.pitch_rate_by_c_m_eta_2 = p.c_bar_over_i_yy * i.reference_force * i.eta_2;
-    parameter.pitch_rate_by_c_m_eta_3 = p.c_bar_over_i_yy * i.reference_force * i.eta_3;
-    parameter.alpha_gust_by_gust_time = x.alpha_gust * p.inv_gust_time_2;
+    parameter.alpha.c_n_3_alpha_2 = -parameter.gamma.c_n_3_alpha_2;
+    parameter.alpha.c_n_3_alpha = -parameter.gamma.c_n_3_alpha;
+    parameter.alpha.c_n_3_delta_e = -parameter.gamma.c_n_3_delta_e;
+    parameter.alpha.c_n_3_delta_c = -parameter.gamma.c_n_3_delta_c;
+    parameter.alpha.c_n_3_0 = -parameter.gamma.c_n_3_0;
+    parameter.pitch_rate.c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force * i.incidence_2;
+    parameter.pitch_rate.c_m_alpha = p.c_bar_over_i_yy * i.reference_force * i.incidence;
+    parameter.pitch_rate.c_m_delta_e = p.c_bar_over_i_yy * i.reference_force * u.delta_e;
+    parameter.pitch_rate.c_m_delta_c = p.c_bar_over_i_yy * i.reference_force * i.canard_deflection;
+    parameter.pitch_rate.c_m_0 = p.c_bar_over_i_yy * i.reference_force;
+    parameter.pitch_rate.c_m_eta_1 = p.c_bar_over_i_yy * i.reference_force * i.eta_1;
+    parameter.pitch_rate.c_m_eta_2 = p.c_bar_over_i_yy * i.reference_force * i.eta_2;
+    parameter.pitch_rate.c_m_eta_3 = p.c_bar_over_i_yy * i.reference_force * i.eta_3;
+    parameter.alpha_gust.gust_time = x.alpha_gust * p.inv_gust_time_2;
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (27).
@@ -969,11 +607,7 @@ fn parameter_jacobian_by_c_n_3_to_noise<R: Real>(
 ///
 /// 935 operations: 178 additions, 752 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
@@ -993,10 +627,6 @@ pub fn parameter_jacobian_values<R: Real>(
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (27).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

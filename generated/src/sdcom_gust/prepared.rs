@@ -6,497 +6,100 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
-        /// Air density at the reference altitude, slug/ft^3.
-        pub rho_0: R,
-        /// Reference altitude of the air density, ft.
-        pub h_0: R,
-        /// `1 / h_s`.
-        pub inv_h_s: R,
-        /// Reference area, ft.
-        pub s: R,
-        /// Coefficient of phi*alpha^3 in C_T, 1/rad^3.
-        pub c_t_phi_alpha_3: R,
-        /// Coefficient of phi*alpha^2 in C_T, 1/rad^2.
-        pub c_t_phi_alpha_2: R,
-        /// Coefficient of phi*alpha in C_T, 1/rad.
-        pub c_t_phi_alpha: R,
-        /// Coefficient of phi in C_T, dimensionless.
-        pub c_t_phi: R,
-        /// Coefficient of alpha^3 in C_T, 1/rad^3.
-        pub c_t_alpha_3: R,
-        /// Coefficient of alpha^2 in C_T, 1/rad^2.
-        pub c_t_alpha_2: R,
-        /// Coefficient of alpha in C_T, 1/rad.
-        pub c_t_alpha: R,
-        /// Constant part of C_T, dimensionless.
-        pub c_t_0: R,
-        /// Coefficient of eta_1 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_1: R,
-        /// Coefficient of alpha^2 in C_N_1, (ft/slug)^0.5/rad^2.
-        pub c_n_1_alpha_2: R,
-        /// Coefficient of alpha in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_alpha: R,
-        /// Coefficient of delta_e in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_delta_e: R,
-        /// Coefficient of delta_c in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_delta_c: R,
-        /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
-        pub canard_command: R,
         /// Canard deflection per elevator deflection, dimensionless.
-        pub canard_gain: R,
-        /// Constant part of C_N_1, (ft/slug)^0.5.
-        pub c_n_1_0: R,
-        /// `inv_omega_1 * inv_omega_1`.
-        pub inv_omega_1_2: R,
-        /// Coefficient of eta_2 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_2: R,
-        /// Coefficient of alpha^2 in C_N_2, (ft/slug)^0.5/rad^2.
-        pub c_n_2_alpha_2: R,
-        /// Coefficient of alpha in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_alpha: R,
-        /// Coefficient of delta_e in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_delta_e: R,
-        /// Coefficient of delta_c in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_delta_c: R,
-        /// Constant part of C_N_2, (ft/slug)^0.5.
-        pub c_n_2_0: R,
-        /// `inv_omega_2 * inv_omega_2`.
-        pub inv_omega_2_2: R,
-        /// Coefficient of eta_3 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_3: R,
-        /// Coefficient of alpha^2 in C_N_3, (ft/slug)^0.5/rad^2.
-        pub c_n_3_alpha_2: R,
-        /// Coefficient of alpha in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_alpha: R,
-        /// Coefficient of delta_e in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_delta_e: R,
-        /// Coefficient of delta_c in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_delta_c: R,
-        /// Constant part of C_N_3, (ft/slug)^0.5.
-        pub c_n_3_0: R,
-        /// `inv_omega_3 * inv_omega_3`.
-        pub inv_omega_3_2: R,
-        /// Coefficient of alpha^2 in C_D, 1/rad^2.
-        pub c_d_alpha_2: R,
-        /// Coefficient of alpha in C_D, 1/rad.
-        pub c_d_alpha: R,
-        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-        pub c_d_delta_e_2: R,
-        /// Coefficient of delta_e in C_D, 1/rad.
-        pub c_d_delta_e: R,
-        /// Coefficient of delta_c^2 in C_D, 1/rad^2.
-        pub c_d_delta_c_2: R,
-        /// Coefficient of delta_c in C_D, 1/rad.
-        pub c_d_delta_c: R,
-        /// Constant part of C_D, dimensionless.
-        pub c_d_0: R,
-        /// Coefficient of eta_1 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_1: R,
-        /// Coefficient of eta_2 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_2: R,
-        /// Coefficient of eta_3 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_3: R,
-        /// `1 / m`.
-        pub inv_m: R,
-        /// Acceleration of gravity at sea level, ft/s^2.
-        pub g: R,
+        canard_gain,
         /// Curvature of the Earth, 0 where it is flat, 1/ft.
-        pub earth_curvature: R,
-        /// `R::HALF * s * inv_m`.
-        pub half_s_over_m: R,
-        /// Coefficient of alpha in C_L, 1/rad.
-        pub c_l_alpha: R,
+        earth_curvature,
         /// Lift coefficient per elevator deflection that the slaved canard leaves, 1/rad.
-        pub elevator_lift: R,
-        /// Coefficient of delta_c in C_L, 1/rad.
-        pub c_l_delta_c: R,
-        /// Constant part of C_L, dimensionless.
-        pub c_l_0: R,
-        /// Coefficient of eta_1 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_1: R,
-        /// Coefficient of eta_2 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_2: R,
-        /// Coefficient of eta_3 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_3: R,
-        /// Thrust-to-moment coupling arm, ft.
-        pub z_t: R,
-        /// Coefficient of alpha^2 in C_M, 1/rad^2.
-        pub c_m_alpha_2: R,
-        /// Coefficient of alpha in C_M, 1/rad.
-        pub c_m_alpha: R,
-        /// Coefficient of delta_e in C_M, 1/rad.
-        pub c_m_delta_e: R,
-        /// Coefficient of delta_c in C_M, 1/rad.
-        pub c_m_delta_c: R,
-        /// Constant part of C_M, dimensionless.
-        pub c_m_0: R,
-        /// Coefficient of eta_1 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_1: R,
-        /// Coefficient of eta_2 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_2: R,
-        /// Coefficient of eta_3 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_3: R,
-        /// Mean aerodynamic chord, ft.
-        pub c_bar: R,
-        /// `1 / i_yy`.
-        pub inv_i_yy: R,
+        elevator_lift,
         /// Decay rate of the coloured noise of mode 1, 1/s.
-        pub chi_decay_1: R,
+        chi_decay_1,
         /// Decay rate of the coloured noise of mode 2, 1/s.
-        pub chi_decay_2: R,
+        chi_decay_2,
         /// Decay rate of the coloured noise of mode 3, 1/s.
-        pub chi_decay_3: R,
-        /// `1 / gust_time`.
-        pub inv_gust_time: R,
-        /// `2 * g`.
-        pub two_g: R,
-        /// `3 * c_t_alpha_3`.
-        pub three_c_t_alpha_3: R,
-        /// `2 * c_t_alpha_2`.
-        pub two_c_t_alpha_2: R,
-        /// `2 * c_n_1_alpha_2`.
-        pub two_c_n_1_alpha_2: R,
-        /// `2 * c_n_2_alpha_2`.
-        pub two_c_n_2_alpha_2: R,
-        /// `2 * c_n_3_alpha_2`.
-        pub two_c_n_3_alpha_2: R,
-        /// `3 * c_t_phi_alpha_3`.
-        pub three_c_t_phi_alpha_3: R,
-        /// `2 * c_t_phi_alpha_2`.
-        pub two_c_t_phi_alpha_2: R,
-        /// `2 * c_d_alpha_2`.
-        pub two_c_d_alpha_2: R,
-        /// `2 * c_m_alpha_2`.
-        pub two_c_m_alpha_2: R,
-        /// `c_bar_c_m_eta_1 + z_t_c_t_eta_1`.
-        pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1: R,
-        /// `c_bar_c_m_eta_2 + z_t_c_t_eta_2`.
-        pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2: R,
-        /// `c_bar_c_m_eta_3 + z_t_c_t_eta_3`.
-        pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3: R,
-        /// `-chi_decay_1`.
-        pub minus_chi_decay_1: R,
-        /// `-chi_decay_2`.
-        pub minus_chi_decay_2: R,
-        /// `-chi_decay_3`.
-        pub minus_chi_decay_3: R,
-        /// `-inv_gust_time`.
-        pub minus_over_gust_time: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_1_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_2_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_3_d_delta_e: R,
-        /// `2 * c_d_delta_e_2`.
-        pub two_c_d_delta_e_2: R,
-        /// `2 * c_d_delta_c_2`.
-        pub two_c_d_delta_c_2: R,
-        /// `c_n_1_delta_c * canard_command`.
-        pub c_n_1_delta_c_canard_command: R,
-        /// `c_n_2_delta_c * canard_command`.
-        pub c_n_2_delta_c_canard_command: R,
-        /// `c_n_3_delta_c * canard_command`.
-        pub c_n_3_delta_c_canard_command: R,
-        /// `c_l_delta_c * canard_command`.
-        pub c_l_delta_c_canard_command: R,
-        /// `c_m_delta_e + c_m_delta_c * canard_gain`.
-        pub c_m_delta_e_plus_c_m_delta_c_canard_gain: R,
-        /// `c_m_delta_c * canard_command`.
-        pub c_m_delta_c_canard_command: R,
-        /// `inv_m * inv_m`.
-        pub inv_m_2: R,
-        /// `c_t_eta_1 * inv_omega_1_2`.
-        pub c_t_eta_1_inv_omega_1_2: R,
-        /// `c_t_eta_2 * inv_omega_2_2`.
-        pub c_t_eta_2_inv_omega_2_2: R,
-        /// `c_t_eta_3 * inv_omega_3_2`.
-        pub c_t_eta_3_inv_omega_3_2: R,
-        /// `c_d_eta_1 * inv_omega_1_2`.
-        pub c_d_eta_1_times_inv_omega_1_2: R,
-        /// `c_d_eta_2 * inv_omega_2_2`.
-        pub c_d_eta_2_times_inv_omega_2_2: R,
-        /// `c_d_eta_3 * inv_omega_3_2`.
-        pub c_d_eta_3_times_inv_omega_3_2: R,
-        /// `R::HALF * s`.
-        pub half_s: R,
-        /// `R::HALF * c_t_eta_1 * inv_omega_1_2`.
-        pub half_c_t_eta_1_inv_omega_1_2: R,
-        /// `R::HALF * c_t_eta_2 * inv_omega_2_2`.
-        pub half_c_t_eta_2_inv_omega_2_2: R,
-        /// `R::HALF * c_t_eta_3 * inv_omega_3_2`.
-        pub half_c_t_eta_3_inv_omega_3_2: R,
-        /// `R::HALF * c_d_eta_1 * inv_omega_1_2`.
-        pub half_c_d_eta_1_times_inv_omega_1_2: R,
-        /// `R::HALF * c_d_eta_2 * inv_omega_2_2`.
-        pub half_c_d_eta_2_times_inv_omega_2_2: R,
-        /// `R::HALF * c_d_eta_3 * inv_omega_3_2`.
-        pub half_c_d_eta_3_times_inv_omega_3_2: R,
-        /// `inv_h_s * inv_h_s`.
-        pub inv_h_s_2: R,
-        /// `2 * g * earth_curvature * inv_r_e`.
-        pub two_g_earth_curvature_over_r_e: R,
-        /// `1 / omega_1`.
-        pub inv_omega_1: R,
-        /// `2 * c_t_eta_1`.
-        pub two_c_t_eta_1: R,
-        /// `1 / omega_2`.
-        pub inv_omega_2: R,
-        /// `2 * c_t_eta_2`.
-        pub two_c_t_eta_2: R,
-        /// `1 / omega_3`.
-        pub inv_omega_3: R,
-        /// `2 * c_t_eta_3`.
-        pub two_c_t_eta_3: R,
-        /// `c_t_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
-        pub c_t_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
-        /// `c_t_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
-        pub c_t_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
-        /// `c_t_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
-        pub c_t_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
-        /// `c_d_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
-        pub c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2: R,
-        /// `c_d_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
-        pub c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2: R,
-        /// `c_d_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
-        pub c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2: R,
-        /// `c_l_delta_e * inv_c_l_delta_c`.
-        pub c_l_delta_e_over_c_l_delta_c: R,
-        /// `R::from_f64(-2.0) * g * inv_r_e`.
-        pub minus_two_g_over_r_e: R,
-        /// `canard_slaving * inv_c_l_delta_c`.
-        pub canard_slaving_over_c_l_delta_c: R,
-        /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
-        /// `R::from_f64(-0.5) * inv_m_2`.
-        pub minus_half_inv_m_2: R,
-        /// `R::HALF * inv_m`.
-        pub half_over_m: R,
-        /// `c_l_eta_1 * inv_omega_1_2`.
-        pub c_l_eta_1_inv_omega_1_2: R,
-        /// `c_l_eta_2 * inv_omega_2_2`.
-        pub c_l_eta_2_inv_omega_2_2: R,
-        /// `c_l_eta_3 * inv_omega_3_2`.
-        pub c_l_eta_3_inv_omega_3_2: R,
-        /// `R::HALF * c_l_eta_1 * inv_omega_1_2`.
-        pub half_c_l_eta_1_inv_omega_1_2: R,
-        /// `R::HALF * c_l_eta_2 * inv_omega_2_2`.
-        pub half_c_l_eta_2_inv_omega_2_2: R,
-        /// `R::HALF * c_l_eta_3 * inv_omega_3_2`.
-        pub half_c_l_eta_3_inv_omega_3_2: R,
-        /// `1 / r_e`.
-        pub inv_r_e: R,
-        /// `earth_curvature * earth_curvature`.
-        pub earth_curvature_2: R,
-        /// `c_l_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
-        pub c_l_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
-        /// `c_l_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
-        pub c_l_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
-        /// `c_l_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
-        pub c_l_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
-        /// Coefficient of delta_e in C_L, 1/rad.
-        pub c_l_delta_e: R,
-        /// `c_l_delta_recip()`.
-        pub inv_c_l_delta_c: R,
-        /// Derivative of lift coefficient per elevator deflection that the slaved canard leaves with respect to
-        /// c_l_delta_e, dimensionless.
-        pub d_elevator_lift_d_c_l_delta_e: R,
-        /// `R::HALF * inv_m_2`.
-        pub half_inv_m_2: R,
-        /// `c_m_eta_1 * inv_omega_1_2`.
-        pub c_m_eta_1_inv_omega_1_2: R,
-        /// `c_m_eta_2 * inv_omega_2_2`.
-        pub c_m_eta_2_inv_omega_2_2: R,
-        /// `c_m_eta_3 * inv_omega_3_2`.
-        pub c_m_eta_3_inv_omega_3_2: R,
-        /// `R::HALF * c_m_eta_1 * inv_omega_1_2`.
-        pub half_c_m_eta_1_inv_omega_1_2: R,
-        /// `R::HALF * c_m_eta_2 * inv_omega_2_2`.
-        pub half_c_m_eta_2_inv_omega_2_2: R,
-        /// `R::HALF * c_m_eta_3 * inv_omega_3_2`.
-        pub half_c_m_eta_3_inv_omega_3_2: R,
-        /// `inv_omega_1 * (2 * c_bar_c_m_eta_1 + 2 * z_t_c_t_eta_1)`.
-        pub two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1: R,
-        /// `inv_omega_2 * (2 * c_bar_c_m_eta_2 + 2 * z_t_c_t_eta_2)`.
-        pub two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2: R,
-        /// `inv_omega_3 * (2 * c_bar_c_m_eta_3 + 2 * z_t_c_t_eta_3)`.
-        pub two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3: R,
-        /// `c_m_eta_1 * c_n_1_delta_c * inv_omega_1_2`.
-        pub c_m_eta_1_c_n_1_delta_c_inv_omega_1_2: R,
-        /// `c_m_eta_2 * c_n_2_delta_c * inv_omega_2_2`.
-        pub c_m_eta_2_c_n_2_delta_c_inv_omega_2_2: R,
-        /// `c_m_eta_3 * c_n_3_delta_c * inv_omega_3_2`.
-        pub c_m_eta_3_c_n_3_delta_c_inv_omega_3_2: R,
-        /// `z_t * inv_i_yy`.
-        pub z_t_over_i_yy: R,
-        /// `c_bar * inv_i_yy`.
-        pub c_bar_over_i_yy: R,
-        /// `inv_omega_1_2 * c_bar_c_m_eta_1_plus_z_t_c_t_eta_1`.
-        pub c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2: R,
-        /// `c_bar * c_m_eta_1`.
-        pub c_bar_c_m_eta_1: R,
-        /// `z_t * c_t_eta_1`.
-        pub z_t_c_t_eta_1: R,
-        /// `inv_omega_2_2 * c_bar_c_m_eta_2_plus_z_t_c_t_eta_2`.
-        pub c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2: R,
-        /// `c_bar * c_m_eta_2`.
-        pub c_bar_c_m_eta_2: R,
-        /// `z_t * c_t_eta_2`.
-        pub z_t_c_t_eta_2: R,
-        /// `inv_omega_3_2 * c_bar_c_m_eta_3_plus_z_t_c_t_eta_3`.
-        pub c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2: R,
-        /// `c_bar * c_m_eta_3`.
-        pub c_bar_c_m_eta_3: R,
-        /// `z_t * c_t_eta_3`.
-        pub z_t_c_t_eta_3: R,
-        /// Derivative of decay rate of the coloured noise of mode 1 with respect to omega_1, 1/rad.
-        pub d_chi_decay_1_d_omega_1: R,
-        /// Derivative of decay rate of the coloured noise of mode 1 with respect to zeta_1, 1/s.
-        pub d_chi_decay_1_d_zeta_1: R,
-        /// Derivative of decay rate of the coloured noise of mode 1 with respect to moment_matching, 1/s.
-        pub d_chi_decay_1_d_moment_matching: R,
-        /// Derivative of decay rate of the coloured noise of mode 2 with respect to omega_2, 1/rad.
-        pub d_chi_decay_2_d_omega_2: R,
-        /// Derivative of decay rate of the coloured noise of mode 2 with respect to zeta_2, 1/s.
-        pub d_chi_decay_2_d_zeta_2: R,
-        /// Derivative of decay rate of the coloured noise of mode 2 with respect to moment_matching, 1/s.
-        pub d_chi_decay_2_d_moment_matching: R,
-        /// Derivative of decay rate of the coloured noise of mode 3 with respect to omega_3, 1/rad.
-        pub d_chi_decay_3_d_omega_3: R,
-        /// Derivative of decay rate of the coloured noise of mode 3 with respect to zeta_3, 1/s.
-        pub d_chi_decay_3_d_zeta_3: R,
-        /// Derivative of decay rate of the coloured noise of mode 3 with respect to moment_matching, 1/s.
-        pub d_chi_decay_3_d_moment_matching: R,
-        /// `inv_gust_time * inv_gust_time`.
-        pub inv_gust_time_2: R,
-        /// `2 * earth_curvature_2`.
-        pub two_earth_curvature_2: R,
-        /// `R::from_f64(6.0) * c_t_alpha_3`.
-        pub six_c_t_alpha_3: R,
-        /// `R::from_f64(6.0) * c_t_phi_alpha_3`.
-        pub six_c_t_phi_alpha_3: R,
-        /// Intensity of the white noise w_Q, rad/s^0.5.
-        pub w_q: R,
+        chi_decay_3,
         /// Diffusion of the coloured noise of mode 1, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion_1: R,
-        /// `chi_diffusion_2 * shared_noise`.
-        pub chi_diffusion_2_shared_noise: R,
-        /// `chi_diffusion_2 * own_noise`.
-        pub chi_diffusion_2_own_noise: R,
-        /// `chi_diffusion_3 * shared_noise`.
-        pub chi_diffusion_3_shared_noise: R,
-        /// `chi_diffusion_3 * own_noise`.
-        pub chi_diffusion_3_own_noise: R,
-        /// `gust_rms * sqrt_two_over_gust_time`.
-        pub gust_rms_sqrt_two_over_gust_time: R,
+        chi_diffusion_1,
         /// Diffusion of the coloured noise of mode 2, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion_2: R,
-        /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
-        pub shared_noise: R,
+        chi_diffusion_2,
         /// Share of its own noise in what drives a mode, dimensionless.
-        pub own_noise: R,
+        own_noise,
         /// Diffusion of the coloured noise of mode 3, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion_3: R,
-        /// `R::ONE - moment_matching`.
-        pub one_minus_moment_matching: R,
-        /// `1 / zeta_1`.
-        pub inv_zeta_1: R,
-        /// `moment_matching * inv_zeta_1`.
-        pub moment_matching_over_zeta_1: R,
-        /// `1 / zeta_2`.
-        pub inv_zeta_2: R,
-        /// `moment_matching * inv_zeta_2`.
-        pub moment_matching_over_zeta_2: R,
-        /// `1 / zeta_3`.
-        pub inv_zeta_3: R,
-        /// `moment_matching * inv_zeta_3`.
-        pub moment_matching_over_zeta_3: R,
-        /// `inv_zeta_1 * inv_zeta_1`.
-        pub inv_zeta_1_2: R,
-        /// `inv_zeta_2 * inv_zeta_2`.
-        pub inv_zeta_2_2: R,
-        /// `inv_zeta_3 * inv_zeta_3`.
-        pub inv_zeta_3_2: R,
-        /// `R::ONE - variance_matching - moment_matching`.
-        pub one_minus_variance_matching_minus_moment_matching: R,
+        chi_diffusion_3,
         /// Diffusion of the coloured noise of mode 1 over sigma/omega, dimensionless.
-        pub chi_share_1: R,
+        chi_share_1,
         /// Diffusion of the coloured noise of mode 2 over sigma/omega, dimensionless.
-        pub chi_share_2: R,
+        chi_share_2,
         /// Diffusion of the coloured noise of mode 3 over sigma/omega, dimensionless.
-        pub chi_share_3: R,
-        /// `inv_c_l_delta_c * inv_c_l_delta_c`.
-        pub inv_c_l_delta_c_2: R,
-        /// `(2 * inv_gust_time).sqrt()`.
-        pub sqrt_two_over_gust_time: R,
+        chi_share_3,
+        inv_h_s, inv_omega_1_2, inv_omega_2_2, inv_omega_3_2, inv_m, half_s_over_m, inv_i_yy, inv_gust_time, two_g,
+        three_c_t_alpha_3, two_c_t_alpha_2, two_c_n_1_alpha_2, two_c_n_2_alpha_2, two_c_n_3_alpha_2,
+        three_c_t_phi_alpha_3, two_c_t_phi_alpha_2, two_c_d_alpha_2, two_c_m_alpha_2,
+        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1, c_bar_c_m_eta_2_plus_z_t_c_t_eta_2, c_bar_c_m_eta_3_plus_z_t_c_t_eta_3,
+        minus_chi_decay_1, minus_chi_decay_2, minus_chi_decay_3, minus_over_gust_time, d_c_n_1_d_delta_e,
+        d_c_n_2_d_delta_e, d_c_n_3_d_delta_e, two_c_d_delta_e_2, two_c_d_delta_c_2, c_n_1_delta_c_canard_command,
+        c_n_2_delta_c_canard_command, c_n_3_delta_c_canard_command, c_l_delta_c_canard_command,
+        c_m_delta_e_plus_c_m_delta_c_canard_gain, c_m_delta_c_canard_command, inv_m_2, c_t_eta_1_inv_omega_1_2,
+        c_t_eta_2_inv_omega_2_2, c_t_eta_3_inv_omega_3_2, c_d_eta_1_times_inv_omega_1_2, c_d_eta_2_times_inv_omega_2_2,
+        c_d_eta_3_times_inv_omega_3_2, half_s, half_c_t_eta_1_inv_omega_1_2, half_c_t_eta_2_inv_omega_2_2,
+        half_c_t_eta_3_inv_omega_3_2, half_c_d_eta_1_times_inv_omega_1_2, half_c_d_eta_2_times_inv_omega_2_2,
+        half_c_d_eta_3_times_inv_omega_3_2, inv_h_s_2, two_g_earth_curvature_over_r_e, inv_omega_1, two_c_t_eta_1,
+        inv_omega_2, two_c_t_eta_2, inv_omega_3, two_c_t_eta_3, c_t_eta_1_c_n_1_delta_c_inv_omega_1_2,
+        c_t_eta_2_c_n_2_delta_c_inv_omega_2_2, c_t_eta_3_c_n_3_delta_c_inv_omega_3_2,
+        c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2, c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2,
+        c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2, c_l_delta_e_over_c_l_delta_c, minus_two_g_over_r_e,
+        canard_slaving_over_c_l_delta_c, canard_slaving_c_l_delta_e_inv_c_l_delta_c_2, minus_half_inv_m_2, half_over_m,
+        c_l_eta_1_inv_omega_1_2, c_l_eta_2_inv_omega_2_2, c_l_eta_3_inv_omega_3_2, half_c_l_eta_1_inv_omega_1_2,
+        half_c_l_eta_2_inv_omega_2_2, half_c_l_eta_3_inv_omega_3_2, inv_r_e, earth_curvature_2,
+        c_l_eta_1_c_n_1_delta_c_inv_omega_1_2, c_l_eta_2_c_n_2_delta_c_inv_omega_2_2,
+        c_l_eta_3_c_n_3_delta_c_inv_omega_3_2, inv_c_l_delta_c, d_elevator_lift_d_c_l_delta_e, half_inv_m_2,
+        c_m_eta_1_inv_omega_1_2, c_m_eta_2_inv_omega_2_2, c_m_eta_3_inv_omega_3_2, half_c_m_eta_1_inv_omega_1_2,
+        half_c_m_eta_2_inv_omega_2_2, half_c_m_eta_3_inv_omega_3_2,
+        two_c_bar_c_m_eta_1_plus_two_z_t_c_t_eta_1_times_inv_omega_1,
+        two_c_bar_c_m_eta_2_plus_two_z_t_c_t_eta_2_times_inv_omega_2,
+        two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3, c_m_eta_1_c_n_1_delta_c_inv_omega_1_2,
+        c_m_eta_2_c_n_2_delta_c_inv_omega_2_2, c_m_eta_3_c_n_3_delta_c_inv_omega_3_2, z_t_over_i_yy, c_bar_over_i_yy,
+        c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2, c_bar_c_m_eta_1, z_t_c_t_eta_1,
+        c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2, c_bar_c_m_eta_2, z_t_c_t_eta_2,
+        c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2, c_bar_c_m_eta_3, z_t_c_t_eta_3, d_chi_decay_1_d_omega_1,
+        d_chi_decay_1_d_zeta_1, d_chi_decay_1_d_moment_matching, d_chi_decay_2_d_omega_2, d_chi_decay_2_d_zeta_2,
+        d_chi_decay_2_d_moment_matching, d_chi_decay_3_d_omega_3, d_chi_decay_3_d_zeta_3,
+        d_chi_decay_3_d_moment_matching, inv_gust_time_2, two_earth_curvature_2, six_c_t_alpha_3, six_c_t_phi_alpha_3,
+        chi_diffusion_2_shared_noise, chi_diffusion_2_own_noise, chi_diffusion_3_shared_noise,
+        chi_diffusion_3_own_noise, gust_rms_sqrt_two_over_gust_time, one_minus_moment_matching, inv_zeta_1,
+        moment_matching_over_zeta_1, inv_zeta_2, moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3,
+        inv_zeta_1_2, inv_zeta_2_2, inv_zeta_3_2, one_minus_variance_matching_minus_moment_matching, inv_c_l_delta_c_2,
+        sqrt_two_over_gust_time,
+    }
+    from Parameters {
+        rho_0, h_0,
+        s,
+        c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_phi_alpha, c_t_phi, c_t_alpha_3, c_t_alpha_2, c_t_alpha, c_t_0, c_t_eta_1,
+        c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c,
+        canard_command,
+        c_n_1_0,
+        c_t_eta_2,
+        c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0,
+        c_t_eta_3,
+        c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        c_d_alpha_2, c_d_alpha, c_d_delta_e_2, c_d_delta_e, c_d_delta_c_2, c_d_delta_c, c_d_0, c_d_eta_1, c_d_eta_2,
+        c_d_eta_3,
+        g,
+        c_l_alpha, c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3,
+        z_t,
+        c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_delta_c, c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3,
+        c_bar,
+        c_l_delta_e,
+        w_q,
+        shared_noise,
     }
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.rho_0 = p.rho_0;
-    c.h_0 = p.h_0;
-    c.s = p.s;
-    c.c_t_phi_alpha_3 = p.c_t_phi_alpha_3;
-    c.c_t_phi_alpha_2 = p.c_t_phi_alpha_2;
-    c.c_t_phi_alpha = p.c_t_phi_alpha;
-    c.c_t_phi = p.c_t_phi;
-    c.c_t_alpha_3 = p.c_t_alpha_3;
-    c.c_t_alpha_2 = p.c_t_alpha_2;
-    c.c_t_alpha = p.c_t_alpha;
-    c.c_t_0 = p.c_t_0;
-    c.c_t_eta_1 = p.c_t_eta_1;
-    c.c_n_1_alpha_2 = p.c_n_1_alpha_2;
-    c.c_n_1_alpha = p.c_n_1_alpha;
-    c.c_n_1_delta_e = p.c_n_1_delta_e;
-    c.c_n_1_delta_c = p.c_n_1_delta_c;
-    c.canard_command = p.canard_command;
-    c.c_n_1_0 = p.c_n_1_0;
-    c.c_t_eta_2 = p.c_t_eta_2;
-    c.c_n_2_alpha_2 = p.c_n_2_alpha_2;
-    c.c_n_2_alpha = p.c_n_2_alpha;
-    c.c_n_2_delta_e = p.c_n_2_delta_e;
-    c.c_n_2_delta_c = p.c_n_2_delta_c;
-    c.c_n_2_0 = p.c_n_2_0;
-    c.c_t_eta_3 = p.c_t_eta_3;
-    c.c_n_3_alpha_2 = p.c_n_3_alpha_2;
-    c.c_n_3_alpha = p.c_n_3_alpha;
-    c.c_n_3_delta_e = p.c_n_3_delta_e;
-    c.c_n_3_delta_c = p.c_n_3_delta_c;
-    c.c_n_3_0 = p.c_n_3_0;
-    c.c_d_alpha_2 = p.c_d_alpha_2;
-    c.c_d_alpha = p.c_d_alpha;
-    c.c_d_delta_e_2 = p.c_d_delta_e_2;
-    c.c_d_delta_e = p.c_d_delta_e;
-    c.c_d_delta_c_2 = p.c_d_delta_c_2;
-    c.c_d_delta_c = p.c_d_delta_c;
-    c.c_d_0 = p.c_d_0;
-    c.c_d_eta_1 = p.c_d_eta_1;
-    c.c_d_eta_2 = p.c_d_eta_2;
-    c.c_d_eta_3 = p.c_d_eta_3;
-    c.g = p.g;
-    c.c_l_alpha = p.c_l_alpha;
-    c.c_l_delta_c = p.c_l_delta_c;
-    c.c_l_0 = p.c_l_0;
-    c.c_l_eta_1 = p.c_l_eta_1;
-    c.c_l_eta_2 = p.c_l_eta_2;
-    c.c_l_eta_3 = p.c_l_eta_3;
-    c.z_t = p.z_t;
-    c.c_m_alpha_2 = p.c_m_alpha_2;
-    c.c_m_alpha = p.c_m_alpha;
-    c.c_m_delta_e = p.c_m_delta_e;
-    c.c_m_delta_c = p.c_m_delta_c;
-    c.c_m_0 = p.c_m_0;
-    c.c_m_eta_1 = p.c_m_eta_1;
-    c.c_m_eta_2 = p.c_m_eta_2;
-    c.c_m_eta_3 = p.c_m_eta_3;
-    c.c_bar = p.c_bar;
-    c.c_l_delta_e = p.c_l_delta_e;
-    c.w_q = p.w_q;
-    c.shared_noise = p.shared_noise;
-
     // Gravity, (1)
     c.inv_r_e = p.r_e.recip();
     c.earth_curvature = p.spherical_earth * c.inv_r_e; // 1/ft
@@ -524,10 +127,7 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
-}
 
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Derivatives with respect to delta_e
     c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
     c.d_c_n_2_d_delta_e = p.c_n_2_delta_e + p.c_n_2_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
@@ -548,9 +148,7 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * c.inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    c.one_minus_variance_matching_minus_moment_matching = R::ONE
-        - p.variance_matching
-        - p.moment_matching;
+    c.one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
     c.chi_share_1 = p.zeta_1 * c.one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_1;
@@ -564,6 +162,11 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.chi_share_3 = p.zeta_3 * c.one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_3;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Coloured noise, (23)
     c.inv_omega_3 = p.omega_3.recip();
     c.chi_diffusion_3 = c.chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
 
@@ -608,15 +211,9 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_n_2_delta_c_canard_command = p.c_n_2_delta_c * p.canard_command;
     c.c_n_3_delta_c_canard_command = p.c_n_3_delta_c * p.canard_command;
     c.c_l_delta_c_canard_command = p.c_l_delta_c * p.canard_command;
-    c.c_m_delta_e_plus_c_m_delta_c_canard_gain = p.c_m_delta_e
-        + p.c_m_delta_c * c.canard_gain;
+    c.c_m_delta_e_plus_c_m_delta_c_canard_gain = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain;
     c.c_m_delta_c_canard_command = p.c_m_delta_c * p.canard_command;
     c.inv_m_2 = c.inv_m * c.inv_m;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
     c.c_t_eta_1_inv_omega_1_2 = p.c_t_eta_1 * c.inv_omega_1_2;
     c.c_t_eta_2_inv_omega_2_2 = p.c_t_eta_2 * c.inv_omega_2_2;
     c.c_t_eta_3_inv_omega_3_2 = p.c_t_eta_3 * c.inv_omega_3_2;
@@ -635,24 +232,22 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_t_eta_1 = R::TWO * p.c_t_eta_1;
     c.two_c_t_eta_2 = R::TWO * p.c_t_eta_2;
     c.two_c_t_eta_3 = R::TWO * p.c_t_eta_3;
-    c.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_t_eta_1 * p.c_n_1_delta_c
-        * c.inv_omega_1_2;
-    c.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_t_eta_2 * p.c_n_2_delta_c
-        * c.inv_omega_2_2;
-    c.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_t_eta_3 * p.c_n_3_delta_c
-        * c.inv_omega_3_2;
-    c.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 = p.c_d_eta_1 * p.c_n_1_delta_c
-        * c.inv_omega_1_2;
-    c.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 = p.c_d_eta_2 * p.c_n_2_delta_c
-        * c.inv_omega_2_2;
-    c.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 = p.c_d_eta_3 * p.c_n_3_delta_c
-        * c.inv_omega_3_2;
+    c.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_t_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
+    c.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_t_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
+    c.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_t_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
+    c.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 = p.c_d_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
+    c.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 = p.c_d_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
+    c.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 = p.c_d_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
     c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c = p.canard_slaving * c.inv_c_l_delta_c;
     c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
-    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e
-        * c.inv_c_l_delta_c_2;
+    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.minus_half_inv_m_2 = R::from_f64(-0.5) * c.inv_m_2;
     c.half_over_m = R::HALF * c.inv_m;
     c.c_l_eta_1_inv_omega_1_2 = p.c_l_eta_1 * c.inv_omega_1_2;
@@ -662,12 +257,9 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.half_c_l_eta_2_inv_omega_2_2 = R::HALF * p.c_l_eta_2 * c.inv_omega_2_2;
     c.half_c_l_eta_3_inv_omega_3_2 = R::HALF * p.c_l_eta_3 * c.inv_omega_3_2;
     c.earth_curvature_2 = c.earth_curvature * c.earth_curvature;
-    c.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_l_eta_1 * p.c_n_1_delta_c
-        * c.inv_omega_1_2;
-    c.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_l_eta_2 * p.c_n_2_delta_c
-        * c.inv_omega_2_2;
-    c.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_l_eta_3 * p.c_n_3_delta_c
-        * c.inv_omega_3_2;
+    c.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_l_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
+    c.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_l_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
+    c.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_l_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
     c.half_inv_m_2 = R::HALF * c.inv_m_2;
     c.c_m_eta_1_inv_omega_1_2 = p.c_m_eta_1 * c.inv_omega_1_2;
     c.c_m_eta_2_inv_omega_2_2 = p.c_m_eta_2 * c.inv_omega_2_2;
@@ -681,20 +273,14 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         * (R::TWO * c.c_bar_c_m_eta_2 + R::TWO * c.z_t_c_t_eta_2);
     c.two_c_bar_c_m_eta_3_plus_two_z_t_c_t_eta_3_times_inv_omega_3 = c.inv_omega_3
         * (R::TWO * c.c_bar_c_m_eta_3 + R::TWO * c.z_t_c_t_eta_3);
-    c.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_m_eta_1 * p.c_n_1_delta_c
-        * c.inv_omega_1_2;
-    c.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_m_eta_2 * p.c_n_2_delta_c
-        * c.inv_omega_2_2;
-    c.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_m_eta_3 * p.c_n_3_delta_c
-        * c.inv_omega_3_2;
+    c.c_m_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_m_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
+    c.c_m_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_m_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
+    c.c_m_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_m_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
     c.z_t_over_i_yy = p.z_t * c.inv_i_yy;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
-    c.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 = c.inv_omega_1_2
-        * c.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1;
-    c.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 = c.inv_omega_2_2
-        * c.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2;
-    c.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 = c.inv_omega_3_2
-        * c.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3;
+    c.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2 = c.inv_omega_1_2 * c.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1;
+    c.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2 = c.inv_omega_2_2 * c.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2;
+    c.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2 = c.inv_omega_3_2 * c.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3;
     c.inv_gust_time_2 = c.inv_gust_time * c.inv_gust_time;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
     c.six_c_t_alpha_3 = R::from_f64(6.0) * p.c_t_alpha_3;
@@ -711,7 +297,7 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 ///
 /// 234 operations: 34 additions, 186 multiplications, 12 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
+    let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);
     prepare_part_2(&mut c, p);
     prepare_part_3(&mut c, p);

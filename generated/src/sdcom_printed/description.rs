@@ -3,10 +3,7 @@
 //! What SDCOM_PRINTED says of itself.
 
 use super::*;
-use ahv_core::{
-    Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table,
-    TrimProblem,
-};
+use ahv_core::{Equation, GeneratedModel, ModeOfMotion, ParameterSetOf, Real, Sought, Table, TrimProblem};
 
 impl GeneratedModel for Model<f64> {
     const NAME: &'static str = "sdcom_printed";
@@ -22,12 +19,7 @@ impl GeneratedModel for Model<f64> {
         given: &[
             ahv_core::Given::new("velocity", 7702.0808, 0.0, f64::INFINITY),
             ahv_core::Given::new("altitude", 85000.0, f64::NEG_INFINITY, f64::INFINITY),
-            ahv_core::Given::new(
-                "gamma",
-                0.0,
-                -core::f64::consts::FRAC_PI_2,
-                core::f64::consts::FRAC_PI_2,
-            ),
+            ahv_core::Given::new("gamma", 0.0, -core::f64::consts::FRAC_PI_2, core::f64::consts::FRAC_PI_2),
         ],
         sought: &[
             Sought::new("alpha", 0.0, 0.1),
@@ -80,20 +72,13 @@ impl GeneratedModel for Model<f64> {
     }
 
     #[inline(always)]
-    fn map_model<R: Real, U: Real>(
-        model: &Model<R>,
-        f: impl FnMut(&R) -> U,
-    ) -> Model<U> {
+    fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {
         model.map_ref(f)
     }
     fn coloured<V: ahv_core::CountVisitor>(visitor: V) -> Option<V::Output> {
         Some(visitor.visit::<3>())
     }
-    fn parameter_jacobian(
-        &self,
-        x: &State<f64>,
-        u: &Input<f64>,
-    ) -> ParameterJacobian<f64> {
+    fn parameter_jacobian(&self, x: &State<f64>, u: &Input<f64>) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)
     }
     fn outputs<R: Real>(model: &Model<R>, x: &State<R>, u: &Input<R>) -> Outputs<R> {

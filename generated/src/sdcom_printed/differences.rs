@@ -3,11 +3,7 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 #![allow(non_snake_case)]
 
-use super::{
-    Input, Prepared, State, curvatures, intermediates, noise_slopes, sensitivities,
-    slopes,
-};
-
+use super::{Input, Prepared, State, curvatures, intermediates, noise_slopes, sensitivities, slopes};
 use ahv_core::Real;
 
 /// Delta f of (27): the velocity rate of the exact form less that of the printed one, eq. (27). Unit: ft/s^2.
@@ -22,10 +18,7 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
@@ -70,10 +63,7 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
@@ -112,10 +102,7 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
@@ -156,10 +143,7 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
@@ -200,10 +184,7 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
@@ -257,10 +238,7 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3
@@ -309,10 +287,7 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
     // Curve fits, (3)
     let alpha_3 = x.alpha * i.alpha_2;
-    let c_t_phi = p.c_t_phi
-        + p.c_t_phi_alpha_3 * alpha_3
-        + p.c_t_phi_alpha_2 * i.alpha_2
-        + p.c_t_phi_alpha * x.alpha;
+    let c_t_phi = p.c_t_phi + p.c_t_phi_alpha_3 * alpha_3 + p.c_t_phi_alpha_2 * i.alpha_2 + p.c_t_phi_alpha * x.alpha;
     let c_t = p.c_t_0
         + c_t_phi * u.phi
         + p.c_t_alpha_3 * alpha_3

@@ -4,57 +4,49 @@
 #![allow(clippy::too_many_arguments)]
 
 use super::{
-    Curvatures, Diffusion, Input, Intermediates, Noise, NoiseSlopes, Prepared, Slopes,
-    State, curvatures, drift_from, intermediates, noise_slopes, slopes,
+    Curvatures, Diffusion, Input, Intermediates, Noise, NoiseSlopes, Prepared, Slopes, State, curvatures, drift_from,
+    intermediates, noise_slopes, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Diffusion`].
-    pub struct DiffusionEntries, DIFFUSION_PATTERN: State<Noise> {
-        velocity_by_w_alpha: velocity.w_alpha,
-        altitude_by_w_gamma: altitude.w_gamma,
-        gamma_by_w_alpha: gamma.w_alpha,
-        alpha_by_w_alpha: alpha.w_alpha,
-        alpha_by_w_q: alpha.w_q,
-        pitch_rate_by_w_alpha: pitch_rate.w_alpha,
-        chi_1_by_xi_1: chi_1.xi_1,
-        chi_2_by_xi_1: chi_2.xi_1,
-        chi_2_by_xi_2: chi_2.xi_2,
-        chi_3_by_xi_1: chi_3.xi_1,
-        chi_3_by_xi_3: chi_3.xi_3,
+    pub struct DiffusionEntries in diffusion_entries, DIFFUSION_PATTERN: State<Noise> {
+        velocity { w_alpha }
+        altitude { w_gamma }
+        gamma { w_alpha }
+        alpha { w_alpha, w_q }
+        pitch_rate { w_alpha }
+        chi_1 { xi_1 }
+        chi_2 { xi_1, xi_2 }
+        chi_3 { xi_1, xi_3 }
     }
 }
 
 /// [`diffusion_values`] where its stages are computed already.
 #[inline(always)]
 pub fn diffusion_values_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    _s: &Slopes<R>,
-    _h: &Curvatures<R>,
+    x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, _s: &Slopes<R>, _h: &Curvatures<R>,
     m: &NoiseSlopes<R>,
 ) -> DiffusionEntries<R> {
+    let mut diffusion = DiffusionEntries::splat(R::ZERO);
+
     // Strict-feedback form, (34)
     let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
         * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t; // 1/s^2
 
-    DiffusionEntries {
-        velocity_by_w_alpha: m.alpha_slope_velocity * p.w_alpha,
-        altitude_by_w_gamma: x.velocity * p.w_gamma,
-        gamma_by_w_alpha: i.g_gamma * p.w_alpha,
-        alpha_by_w_alpha: m.alpha_slope_alpha * p.w_alpha,
-        alpha_by_w_q: p.w_q,
-        pitch_rate_by_w_alpha: alpha_slope_pitch_rate * p.w_alpha,
-        chi_1_by_xi_1: p.chi_diffusion_1,
-        chi_2_by_xi_1: p.chi_diffusion_2_shared_noise,
-        chi_2_by_xi_2: p.chi_diffusion_2_own_noise,
-        chi_3_by_xi_1: p.chi_diffusion_3_shared_noise,
-        chi_3_by_xi_3: p.chi_diffusion_3_own_noise,
-    }
+    diffusion.velocity.w_alpha = m.alpha_slope_velocity * p.w_alpha;
+    diffusion.altitude.w_gamma = x.velocity * p.w_gamma;
+    diffusion.gamma.w_alpha = i.g_gamma * p.w_alpha;
+    diffusion.alpha.w_alpha = m.alpha_slope_alpha * p.w_alpha;
+    diffusion.alpha.w_q = p.w_q;
+    diffusion.pitch_rate.w_alpha = alpha_slope_pitch_rate * p.w_alpha;
+    diffusion.chi_1.xi_1 = p.chi_diffusion_1;
+    diffusion.chi_2.xi_1 = p.chi_diffusion_2_shared_noise;
+    diffusion.chi_2.xi_2 = p.chi_diffusion_2_own_noise;
+    diffusion.chi_3.xi_1 = p.chi_diffusion_3_shared_noise;
+    diffusion.chi_3.xi_3 = p.chi_diffusion_3_own_noise;
+    diffusion
 }
 
 /// Diffusion G(x, u) in the Itô sense; derivatives are taken at frozen inputs; the column of w_alpha is H of
@@ -64,11 +56,7 @@ pub fn diffusion_values_from<R: Real>(
 ///
 /// 29 operations: 5 additions, 22 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn diffusion_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> DiffusionEntries<R> {
+pub fn diffusion_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
@@ -87,11 +75,7 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 ///
 /// 193 operations: 70 additions, 118 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn drift_and_diffusion<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (State<R>, Diffusion<R>) {
+pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
@@ -104,14 +88,8 @@ pub fn drift_and_diffusion<R: Real>(
 /// [`noise_increment`] where its stages are computed already.
 #[inline(always)]
 pub fn noise_increment_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-    i: &Intermediates<R>,
-    _s: &Slopes<R>,
-    _h: &Curvatures<R>,
-    m: &NoiseSlopes<R>,
+    x: &State<R>, _u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>, i: &Intermediates<R>, _s: &Slopes<R>,
+    _h: &Curvatures<R>, m: &NoiseSlopes<R>,
 ) -> State<R> {
     // Strict-feedback form, (34)
     let alpha_slope_pitch_rate = i.reference_force * p.inv_i_yy
@@ -134,12 +112,7 @@ pub fn noise_increment_from<R: Real>(
 ///
 /// 44 operations: 8 additions, 34 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
-) -> State<R> {
+pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
@@ -153,10 +126,7 @@ pub fn noise_increment<R: Real>(
 /// 208 operations: 73 additions, 130 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    dw: &Noise<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,
 ) -> (State<R>, State<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);

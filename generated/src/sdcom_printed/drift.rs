@@ -7,12 +7,7 @@ use ahv_core::Real;
 
 /// [`drift`] where its stages are computed already.
 #[inline(always)]
-pub fn drift_from<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> State<R> {
+pub fn drift_from<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> State<R> {
     // Coloured noise, (27)
     let chi_rate_1 = -p.chi_decay_1 * x.chi_1; // (ft*slug)^0.5/s
     let chi_rate_2 = -p.chi_decay_2 * x.chi_2; // (ft*slug)^0.5/s

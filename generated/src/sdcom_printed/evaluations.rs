@@ -10,8 +10,7 @@ use ahv_core::Real;
 /// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.density
+    intermediates(x, u, p).density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
@@ -19,8 +18,7 @@ pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.dynamic_pressure
+    intermediates(x, u, p).dynamic_pressure
 }
 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
@@ -28,8 +26,7 @@ pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) ->
 /// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_n_1
+    intermediates(x, u, p).c_n_1
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -37,8 +34,7 @@ pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_1
+    intermediates(x, u, p).generalized_force_1
 }
 
 /// Static flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
@@ -46,8 +42,7 @@ pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// 22 operations: 6 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_1_inv_omega_1_2
+    intermediates(x, u, p).generalized_force_1_inv_omega_1_2
 }
 
 /// Reduced flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
@@ -67,8 +62,7 @@ pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_n_2
+    intermediates(x, u, p).c_n_2
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -76,8 +70,7 @@ pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_2
+    intermediates(x, u, p).generalized_force_2
 }
 
 /// Static flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
@@ -85,8 +78,7 @@ pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// 22 operations: 6 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_2_inv_omega_2_2
+    intermediates(x, u, p).generalized_force_2_inv_omega_2_2
 }
 
 /// Reduced flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
@@ -106,8 +98,7 @@ pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.c_n_3
+    intermediates(x, u, p).c_n_3
 }
 
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
@@ -115,8 +106,7 @@ pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_3
+    intermediates(x, u, p).generalized_force_3
 }
 
 /// Static flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
@@ -124,8 +114,7 @@ pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 /// 22 operations: 6 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.generalized_force_3_inv_omega_3_2
+    intermediates(x, u, p).generalized_force_3_inv_omega_3_2
 }
 
 /// Reduced flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.

@@ -2,94 +2,39 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{
-    Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures,
-    intermediates, slopes,
-};
-
+use super::{Curvatures, Hessian, Input, Intermediates, Prepared, Slopes, State, curvatures, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`Hessian`].
-    pub struct HessianEntries, HESSIAN_PATTERN: symmetric State<State<State>> {
-        velocity_by_velocity_velocity: velocity.velocity.velocity,
-        velocity_by_altitude_velocity: velocity.altitude.velocity,
-        velocity_by_altitude_altitude: velocity.altitude.altitude,
-        velocity_by_gamma_altitude: velocity.gamma.altitude,
-        velocity_by_gamma_gamma: velocity.gamma.gamma,
-        velocity_by_alpha_velocity: velocity.alpha.velocity,
-        velocity_by_alpha_altitude: velocity.alpha.altitude,
-        velocity_by_alpha_alpha: velocity.alpha.alpha,
-        velocity_by_chi_1_velocity: velocity.chi_1.velocity,
-        velocity_by_chi_1_altitude: velocity.chi_1.altitude,
-        velocity_by_chi_1_alpha: velocity.chi_1.alpha,
-        velocity_by_chi_2_velocity: velocity.chi_2.velocity,
-        velocity_by_chi_2_altitude: velocity.chi_2.altitude,
-        velocity_by_chi_2_alpha: velocity.chi_2.alpha,
-        velocity_by_chi_3_velocity: velocity.chi_3.velocity,
-        velocity_by_chi_3_altitude: velocity.chi_3.altitude,
-        velocity_by_chi_3_alpha: velocity.chi_3.alpha,
-        altitude_by_gamma_velocity: altitude.gamma.velocity,
-        altitude_by_gamma_gamma: altitude.gamma.gamma,
-        gamma_by_velocity_velocity: gamma.velocity.velocity,
-        gamma_by_altitude_velocity: gamma.altitude.velocity,
-        gamma_by_altitude_altitude: gamma.altitude.altitude,
-        gamma_by_gamma_velocity: gamma.gamma.velocity,
-        gamma_by_gamma_altitude: gamma.gamma.altitude,
-        gamma_by_gamma_gamma: gamma.gamma.gamma,
-        gamma_by_alpha_velocity: gamma.alpha.velocity,
-        gamma_by_alpha_altitude: gamma.alpha.altitude,
-        gamma_by_alpha_alpha: gamma.alpha.alpha,
-        gamma_by_chi_1_velocity: gamma.chi_1.velocity,
-        gamma_by_chi_1_altitude: gamma.chi_1.altitude,
-        gamma_by_chi_1_alpha: gamma.chi_1.alpha,
-        gamma_by_chi_2_velocity: gamma.chi_2.velocity,
-        gamma_by_chi_2_altitude: gamma.chi_2.altitude,
-        gamma_by_chi_2_alpha: gamma.chi_2.alpha,
-        gamma_by_chi_3_velocity: gamma.chi_3.velocity,
-        gamma_by_chi_3_altitude: gamma.chi_3.altitude,
-        gamma_by_chi_3_alpha: gamma.chi_3.alpha,
-        alpha_by_velocity_velocity: alpha.velocity.velocity,
-        alpha_by_altitude_velocity: alpha.altitude.velocity,
-        alpha_by_altitude_altitude: alpha.altitude.altitude,
-        alpha_by_gamma_velocity: alpha.gamma.velocity,
-        alpha_by_gamma_altitude: alpha.gamma.altitude,
-        alpha_by_gamma_gamma: alpha.gamma.gamma,
-        alpha_by_alpha_velocity: alpha.alpha.velocity,
-        alpha_by_alpha_altitude: alpha.alpha.altitude,
-        alpha_by_alpha_alpha: alpha.alpha.alpha,
-        alpha_by_chi_1_velocity: alpha.chi_1.velocity,
-        alpha_by_chi_1_altitude: alpha.chi_1.altitude,
-        alpha_by_chi_1_alpha: alpha.chi_1.alpha,
-        alpha_by_chi_2_velocity: alpha.chi_2.velocity,
-        alpha_by_chi_2_altitude: alpha.chi_2.altitude,
-        alpha_by_chi_2_alpha: alpha.chi_2.alpha,
-        alpha_by_chi_3_velocity: alpha.chi_3.velocity,
-        alpha_by_chi_3_altitude: alpha.chi_3.altitude,
-        alpha_by_chi_3_alpha: alpha.chi_3.alpha,
-        pitch_rate_by_velocity_velocity: pitch_rate.velocity.velocity,
-        pitch_rate_by_altitude_velocity: pitch_rate.altitude.velocity,
-        pitch_rate_by_altitude_altitude: pitch_rate.altitude.altitude,
-        pitch_rate_by_alpha_velocity: pitch_rate.alpha.velocity,
-        pitch_rate_by_alpha_altitude: pitch_rate.alpha.altitude,
-        pitch_rate_by_alpha_alpha: pitch_rate.alpha.alpha,
-        pitch_rate_by_chi_1_velocity: pitch_rate.chi_1.velocity,
-        pitch_rate_by_chi_1_altitude: pitch_rate.chi_1.altitude,
-        pitch_rate_by_chi_2_velocity: pitch_rate.chi_2.velocity,
-        pitch_rate_by_chi_2_altitude: pitch_rate.chi_2.altitude,
-        pitch_rate_by_chi_3_velocity: pitch_rate.chi_3.velocity,
-        pitch_rate_by_chi_3_altitude: pitch_rate.chi_3.altitude,
+    pub struct HessianEntries in hessian_entries, HESSIAN_PATTERN: symmetric State<State<State>> {
+        velocity {
+            velocity { velocity } altitude { velocity, altitude } gamma { altitude, gamma }
+            alpha { velocity, altitude, alpha } chi_1 { velocity, altitude, alpha } chi_2 { velocity, altitude, alpha }
+            chi_3 { velocity, altitude, alpha }
+        }
+        altitude { gamma { velocity, gamma } }
+        gamma {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } chi_1 { velocity, altitude, alpha } chi_2 { velocity, altitude, alpha }
+            chi_3 { velocity, altitude, alpha }
+        }
+        alpha {
+            velocity { velocity } altitude { velocity, altitude } gamma { velocity, altitude, gamma }
+            alpha { velocity, altitude, alpha } chi_1 { velocity, altitude, alpha } chi_2 { velocity, altitude, alpha }
+            chi_3 { velocity, altitude, alpha }
+        }
+        pitch_rate {
+            velocity { velocity } altitude { velocity, altitude } alpha { velocity, altitude, alpha }
+            chi_1 { velocity, altitude } chi_2 { velocity, altitude } chi_3 { velocity, altitude }
+        }
     }
 }
 
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
 fn hessian_by_velocity<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to velocity
@@ -102,11 +47,10 @@ fn hessian_by_velocity<R: Real>(
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d2_generalized_force_1_d_velocity_d_velocity
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d2_generalized_force_2_d_velocity_d_velocity
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d2_generalized_force_3_d_velocity_d_velocity; // 1/ft
-    let d2_f_velocity_d_velocity_d_velocity = s.slope_of_f_velocity_in_dynamic_pressure
-        * i.density + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
-    let d2_g_velocity_d_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
-        * i.density; // 1/ft
-    let d2_velocity_rate_printed_d_velocity_d_velocity =
+    let d2_f_velocity_d_velocity_d_velocity = s.slope_of_f_velocity_in_dynamic_pressure * i.density
+        + d2_f_velocity_eta_d_velocity_d_velocity; // 1/ft
+    let d2_g_velocity_d_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure * i.density; // 1/ft
+    hessian.velocity.velocity.velocity =
         p.s_over_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi * i.density
         + d2_f_velocity_d_velocity_d_velocity
         + u.phi * d2_g_velocity_d_velocity_d_velocity; // 1/ft
@@ -133,10 +77,10 @@ fn hessian_by_velocity<R: Real>(
         + s.d_generalized_force_1_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_1_d_velocity
         + s.d_generalized_force_2_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_2_d_velocity
         + s.d_generalized_force_3_d_velocity * d_slope_of_f_gamma_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = i.cos_gamma
-        * d2_gravity_turn_d_velocity_d_velocity;
-    let d2_f_gamma_d_velocity_d_velocity = d2_f_gamma_eta_d_velocity_d_velocity
+    let cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity = i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity;
+    hessian.gamma.velocity.velocity = d2_f_gamma_eta_d_velocity_d_velocity
         - cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+    // rad*s/ft
     let d_slope_of_f_alpha_eta_in_turn_factor_d_velocity = -d_slope_of_f_gamma_eta_in_turn_factor_d_velocity;
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity = -h
         .d2_gamma_rate_printed_d_velocity_d_chi_1 * p.inv_omega_1_2; // rad*s^2/ft^1.5/slug^0.5
@@ -152,7 +96,7 @@ fn hessian_by_velocity<R: Real>(
         + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_velocity
         + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_velocity
         + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_velocity; // rad*s/ft^2
-    let d2_f_alpha_d_velocity_d_velocity = cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity
+    hessian.alpha.velocity.velocity = cos_gamma_times_d2_gravity_turn_d_velocity_d_velocity
         - i.gravity_turn
             * (i.cos_gamma * s.inv_velocity_2
                 + (i.cos_gamma * i.inv_velocity
@@ -177,31 +121,20 @@ fn hessian_by_velocity<R: Real>(
             * d2_generalized_force_2_d_velocity_d_velocity
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * d2_generalized_force_3_d_velocity_d_velocity; // rad/ft^2
-    let d2_f_pitch_rate_d_velocity_d_velocity = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure * i.density
-        + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
-    let d2_g_pitch_rate_d_velocity_d_velocity = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure * i.density; // 1/ft^2
-    let d2_pitch_rate_rate_printed_d_velocity_d_velocity =
+    let d2_f_pitch_rate_d_velocity_d_velocity = s.slope_of_f_pitch_rate_in_dynamic_pressure
+        * i.density + d2_f_pitch_rate_eta_d_velocity_d_velocity; // rad/ft^2
+    let d2_g_pitch_rate_d_velocity_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
+        * i.density; // 1/ft^2
+    hessian.pitch_rate.velocity.velocity =
         p.s_over_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi * i.density
         + d2_f_pitch_rate_d_velocity_d_velocity
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
-
-    hessian.velocity_by_velocity_velocity = d2_velocity_rate_printed_d_velocity_d_velocity;
-    hessian.gamma_by_velocity_velocity = d2_f_gamma_d_velocity_d_velocity;
-    hessian.alpha_by_velocity_velocity = d2_f_alpha_d_velocity_d_velocity;
-    hessian.pitch_rate_by_velocity_velocity = d2_pitch_rate_rate_printed_d_velocity_d_velocity;
 }
 
 /// Entries of [`hessian_values`]: derivatives by altitude in row velocity, altitude in row gamma.
 #[inline(always)]
 fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
@@ -212,6 +145,7 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
                 * s.d_generalized_force_2_d_altitude
             + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
                 * s.d_generalized_force_3_d_altitude); // ft^2/s^2/lb
+    // 1/s/ft
     let d2_f_velocity_eta_d_velocity_d_altitude =
         h.d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity * s.d_dynamic_pressure_d_altitude
         + s.slope_of_f_velocity_eta_in_dynamic_pressure * h.d2_dynamic_pressure_d_velocity_d_altitude
@@ -220,14 +154,14 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_velocity_d_altitude
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_velocity_d_altitude;
     let d2_f_velocity_d_velocity_d_altitude = s.slope_of_f_velocity_in_dynamic_pressure
-        * h.d2_dynamic_pressure_d_velocity_d_altitude
-        + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
+        * h.d2_dynamic_pressure_d_velocity_d_altitude + d2_f_velocity_eta_d_velocity_d_altitude; // 1/s/ft
     let d2_g_velocity_d_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * h.d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft
-    let d2_velocity_rate_printed_d_velocity_d_altitude =
+    hessian.velocity.altitude.velocity =
         h.d2_reference_force_d_velocity_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_velocity_d_altitude
         + u.phi * d2_g_velocity_d_velocity_d_altitude; // 1/s/ft
+    // 1/s^2/ft
     let d2_f_velocity_eta_d_altitude_d_altitude =
         R::TWO * d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude * s.d_dynamic_pressure_d_altitude
         + s.slope_of_f_velocity_eta_in_dynamic_pressure * h.d2_dynamic_pressure_d_altitude_d_altitude
@@ -240,7 +174,7 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
         + d2_f_velocity_eta_d_altitude_d_altitude; // 1/s^2/ft
     let d2_g_velocity_d_altitude_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * h.d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft
-    let d2_velocity_rate_printed_d_altitude_d_altitude =
+    hessian.velocity.altitude.altitude =
         h.d2_reference_force_d_altitude_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_altitude_d_altitude
         + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
@@ -253,22 +187,20 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
     let d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude = i
         .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2
         * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
-    let d2_f_gamma_eta_d_velocity_d_altitude = s
-        .slope_of_f_gamma_eta_in_generalized_force_1
+    let d2_f_gamma_eta_d_velocity_d_altitude = s.slope_of_f_gamma_eta_in_generalized_force_1
         * h.d2_generalized_force_1_d_velocity_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_2
-            * h.d2_generalized_force_2_d_velocity_d_altitude
+        * h.d2_generalized_force_2_d_velocity_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_3
-            * h.d2_generalized_force_3_d_velocity_d_altitude
+        * h.d2_generalized_force_3_d_velocity_d_altitude
         + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
-            * h.d2_turn_factor_d_velocity_d_altitude
-        + s.d_turn_factor_d_velocity * h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        * h.d2_turn_factor_d_velocity_d_altitude + s.d_turn_factor_d_velocity
+        * h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude + s.d_generalized_force_1_d_velocity
+        * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
         + s.d_generalized_force_3_d_velocity
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
+        * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_gamma_d_velocity_d_altitude =
         i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_velocity_d_altitude
         - h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
@@ -276,26 +208,25 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
     let d2_g_gamma_d_velocity_d_altitude = i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * h.d2_turn_factor_d_velocity_d_altitude; // 1/ft^2
-    let d2_gamma_rate_printed_d_velocity_d_altitude =
+    hessian.gamma.altitude.velocity =
         i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * h.d2_turn_factor_d_velocity_d_altitude
         + d2_f_gamma_d_velocity_d_altitude
         + x.alpha * d2_g_gamma_d_velocity_d_altitude; // rad/ft^2
     let d2_f_gamma_eta_d_altitude_d_altitude = s.d_turn_factor_d_altitude
-        * h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude
-        + s.d_generalized_force_1_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
+        * h.d_slope_of_f_gamma_eta_in_turn_factor_d_altitude + s.d_generalized_force_1_d_altitude
+        * d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
+        * d_slope_of_f_gamma_eta_in_generalized_force_2_d_altitude
         + s.d_generalized_force_3_d_altitude
-            * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
+        * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_1
-            * h.d2_generalized_force_1_d_altitude_d_altitude
+        * h.d2_generalized_force_1_d_altitude_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_2
-            * h.d2_generalized_force_2_d_altitude_d_altitude
+        * h.d2_generalized_force_2_d_altitude_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_3
-            * h.d2_generalized_force_3_d_altitude_d_altitude
+        * h.d2_generalized_force_3_d_altitude_d_altitude
         + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
-            * h.d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
+        * h.d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_gamma_d_altitude_d_altitude =
         i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_altitude_d_altitude
         - h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
@@ -303,25 +234,16 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
     let d2_g_gamma_d_altitude_d_altitude = i
         .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * h.d2_turn_factor_d_altitude_d_altitude; // 1/s/ft^2
-    let d2_gamma_rate_printed_d_altitude_d_altitude =
+    hessian.gamma.altitude.altitude =
         i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * h.d2_turn_factor_d_altitude_d_altitude
         + d2_f_gamma_d_altitude_d_altitude
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
-
-    hessian.velocity_by_altitude_velocity = d2_velocity_rate_printed_d_velocity_d_altitude;
-    hessian.velocity_by_altitude_altitude = d2_velocity_rate_printed_d_altitude_d_altitude;
-    hessian.gamma_by_altitude_velocity = d2_gamma_rate_printed_d_velocity_d_altitude;
-    hessian.gamma_by_altitude_altitude = d2_gamma_rate_printed_d_altitude_d_altitude;
 }
 
 /// Entries of [`hessian_values`]: derivatives by altitude in row alpha, altitude in row pitch_rate.
 #[inline(always)]
 fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
     // Derivatives with respect to altitude
     let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -h
@@ -341,11 +263,11 @@ fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
         + s.d_generalized_force_1_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude
         + s.d_generalized_force_2_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_2_d_altitude
         + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_altitude; // rad/ft^2
-    let d2_f_alpha_d_velocity_d_altitude = s.slope_of_f_alpha_in_turn_factor * h.d2_turn_factor_d_velocity_d_altitude
+    let d2_f_alpha_d_velocity_d_altitude =
+        s.slope_of_f_alpha_in_turn_factor * h.d2_turn_factor_d_velocity_d_altitude
         + h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_alpha_eta_d_velocity_d_altitude; // rad/ft^2
-    let d2_alpha_rate_printed_d_velocity_d_altitude = s
-        .slope_of_alpha_rate_printed_in_turn_factor
+    hessian.alpha.altitude.velocity = s.slope_of_alpha_rate_printed_in_turn_factor
         * h.d2_turn_factor_d_velocity_d_altitude + d2_f_alpha_d_velocity_d_altitude; // rad/ft^2
     let d2_f_alpha_eta_d_altitude_d_altitude =
         s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_altitude
@@ -356,20 +278,17 @@ fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * h.d2_generalized_force_2_d_altitude_d_altitude
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_altitude_d_altitude
         + s.slope_of_f_alpha_eta_in_turn_factor * h.d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_f_alpha_d_altitude_d_altitude = s.slope_of_f_alpha_in_turn_factor * h.d2_turn_factor_d_altitude_d_altitude
+    let d2_f_alpha_d_altitude_d_altitude =
+        s.slope_of_f_alpha_in_turn_factor * h.d2_turn_factor_d_altitude_d_altitude
         + h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_alpha_rate_printed_d_altitude_d_altitude = s
-        .slope_of_alpha_rate_printed_in_turn_factor
+    hessian.alpha.altitude.altitude = s.slope_of_alpha_rate_printed_in_turn_factor
         * h.d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p
-        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
         * s.d_generalized_force_1_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p
-        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
         * s.d_generalized_force_2_d_altitude;
-    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p
-        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
+    let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_3 = p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
         * s.d_generalized_force_3_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude = p.inv_i_yy
         * (s.d_reference_force_d_velocity
@@ -392,14 +311,11 @@ fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
             * h.d2_generalized_force_2_d_velocity_d_altitude
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * h.d2_generalized_force_3_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_f_pitch_rate_d_velocity_d_altitude = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure
-        * h.d2_dynamic_pressure_d_velocity_d_altitude
-        + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
-    let d2_g_pitch_rate_d_velocity_d_altitude = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure
+    let d2_f_pitch_rate_d_velocity_d_altitude = s.slope_of_f_pitch_rate_in_dynamic_pressure
+        * h.d2_dynamic_pressure_d_velocity_d_altitude + d2_f_pitch_rate_eta_d_velocity_d_altitude; // rad/s/ft^2
+    let d2_g_pitch_rate_d_velocity_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * h.d2_dynamic_pressure_d_velocity_d_altitude; // 1/s/ft^2
-    let d2_pitch_rate_rate_printed_d_velocity_d_altitude =
+    hessian.pitch_rate.altitude.velocity =
         h.d2_reference_force_d_velocity_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d2_f_pitch_rate_d_velocity_d_altitude
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_altitude; // rad/s/ft^2
@@ -417,68 +333,38 @@ fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
             * h.d2_generalized_force_2_d_altitude_d_altitude
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
             * h.d2_generalized_force_3_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_f_pitch_rate_d_altitude_d_altitude = s
-        .slope_of_f_pitch_rate_in_dynamic_pressure
-        * h.d2_dynamic_pressure_d_altitude_d_altitude
-        + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
-    let d2_g_pitch_rate_d_altitude_d_altitude = p
-        .slope_of_g_pitch_rate_in_dynamic_pressure
+    let d2_f_pitch_rate_d_altitude_d_altitude = s.slope_of_f_pitch_rate_in_dynamic_pressure
+        * h.d2_dynamic_pressure_d_altitude_d_altitude + d2_f_pitch_rate_eta_d_altitude_d_altitude; // rad/s^2/ft^2
+    let d2_g_pitch_rate_d_altitude_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * h.d2_dynamic_pressure_d_altitude_d_altitude; // 1/s^2/ft^2
-    let d2_pitch_rate_rate_printed_d_altitude_d_altitude =
+    hessian.pitch_rate.altitude.altitude =
         h.d2_reference_force_d_altitude_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d2_f_pitch_rate_d_altitude_d_altitude
         + u.delta_e * d2_g_pitch_rate_d_altitude_d_altitude; // rad/s^2/ft^2
-
-    hessian.alpha_by_altitude_velocity = d2_alpha_rate_printed_d_velocity_d_altitude;
-    hessian.alpha_by_altitude_altitude = d2_alpha_rate_printed_d_altitude_d_altitude;
-    hessian.pitch_rate_by_altitude_velocity = d2_pitch_rate_rate_printed_d_velocity_d_altitude;
-    hessian.pitch_rate_by_altitude_altitude = d2_pitch_rate_rate_printed_d_altitude_d_altitude;
 }
 
 /// Entries of [`hessian_values`]: derivatives by gamma.
 #[inline(always)]
-fn hessian_by_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
+fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     // Derivatives with respect to gamma
-    let d2_f_velocity_d_altitude_d_gamma = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-    let d2_f_velocity_d_gamma_d_gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-    let d2_altitude_rate_d_gamma_d_gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    let d2_f_gamma_d_velocity_d_gamma = -s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_f_gamma_d_altitude_d_gamma = -s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
+    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
+    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    let d2_f_gamma_d_gamma_d_gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-    let d2_f_alpha_d_velocity_d_gamma = s.d_gravity_turn_d_velocity
-        * s.d_cos_gamma_d_gamma; // 1/ft
-    let d2_f_alpha_d_altitude_d_gamma = s.d_gravity_turn_d_altitude
-        * s.d_cos_gamma_d_gamma; // 1/s/ft
-    let d2_f_alpha_d_gamma_d_gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    hessian.alpha.gamma.velocity = s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
+    hessian.alpha.gamma.altitude = s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
+    hessian.alpha.gamma.gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
 
-    hessian.velocity_by_gamma_altitude = d2_f_velocity_d_altitude_d_gamma;
-    hessian.velocity_by_gamma_gamma = d2_f_velocity_d_gamma_d_gamma;
-    hessian.altitude_by_gamma_velocity = i.cos_gamma;
-    hessian.altitude_by_gamma_gamma = d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma_by_gamma_velocity = d2_f_gamma_d_velocity_d_gamma;
-    hessian.gamma_by_gamma_altitude = d2_f_gamma_d_altitude_d_gamma;
-    hessian.gamma_by_gamma_gamma = d2_f_gamma_d_gamma_d_gamma;
-    hessian.alpha_by_gamma_velocity = d2_f_alpha_d_velocity_d_gamma;
-    hessian.alpha_by_gamma_altitude = d2_f_alpha_d_altitude_d_gamma;
-    hessian.alpha_by_gamma_gamma = d2_f_alpha_d_gamma_d_gamma;
+    hessian.altitude.gamma.velocity = i.cos_gamma;
 }
 
 /// Entries of [`hessian_values`]: derivatives by alpha in row velocity.
 #[inline(always)]
 fn hessian_by_alpha_of_velocity<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
@@ -507,14 +393,13 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * h.d2_generalized_force_3_d_velocity_d_alpha; // 1/s/rad
     let d2_f_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
-        * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
-        + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
+        * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
     let d_slope_of_g_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
         * (i.cos_alpha * p.c_t_phi_alpha
             + s.c_t_phi_alpha_alpha_plus_c_t_phi * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
     let d2_g_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s/rad
-    let d2_velocity_rate_printed_d_velocity_d_alpha =
+    hessian.velocity.alpha.velocity =
         s.d_reference_force_d_velocity * p.inv_m * s.sum_of_chi_c_t_eta * s.d_cos_alpha_d_alpha
         + d2_f_velocity_d_velocity_d_alpha
         + u.phi * d2_g_velocity_d_velocity_d_alpha; // 1/s/rad
@@ -532,56 +417,45 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
             * h.d2_generalized_force_3_d_altitude_d_alpha; // 1/s^2/rad
     let d2_f_velocity_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
-        * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha
-        + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
+        * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha + d2_f_velocity_eta_d_altitude_d_alpha; // 1/s^2/rad
     let d2_g_velocity_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s^2/rad
-    let d2_velocity_rate_printed_d_altitude_d_alpha =
+    hessian.velocity.alpha.altitude =
         s.d_reference_force_d_altitude * p.inv_m * s.sum_of_chi_c_t_eta * s.d_cos_alpha_d_alpha
         + d2_f_velocity_d_altitude_d_alpha
         + u.phi * d2_g_velocity_d_altitude_d_alpha; // 1/s^2/rad
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
-    let d_slope_of_f_velocity_in_cos_alpha_d_alpha = i.reference_force
-        * p.c_t_alpha_over_m; // ft/s^2/rad
+    let d_slope_of_f_velocity_in_cos_alpha_d_alpha = i.reference_force * p.c_t_alpha_over_m; // ft/s^2/rad
     let d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha = i.reference_force * p.inv_m
         * h.sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha; // ft/s^2/rad
+    // ft/s^2/rad^2
     let d2_f_velocity_eta_d_alpha_d_alpha =
         R::TWO * d_slope_of_f_velocity_eta_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
         + s.slope_of_f_velocity_eta_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_alpha_d_alpha
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_alpha_d_alpha
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_alpha_d_alpha;
-    let d2_f_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
+    let d2_f_velocity_d_alpha_d_alpha =
+        R::TWO * d_slope_of_f_velocity_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
         + s.slope_of_f_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_eta_d_alpha_d_alpha; // ft/s^2/rad^2
-    let d_slope_of_g_velocity_in_cos_alpha_d_alpha = i.reference_force
-        * p.c_t_phi_alpha_over_m; // ft/s^2/rad
-    let d2_g_velocity_d_alpha_d_alpha = R::TWO
-        * d_slope_of_g_velocity_in_cos_alpha_d_alpha * s.d_cos_alpha_d_alpha
-        + s.slope_of_g_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha; // ft/s^2/rad^2
-    let d2_velocity_rate_printed_d_alpha_d_alpha =
+    let d_slope_of_g_velocity_in_cos_alpha_d_alpha = i.reference_force * p.c_t_phi_alpha_over_m; // ft/s^2/rad
+    let d2_g_velocity_d_alpha_d_alpha = R::TWO * d_slope_of_g_velocity_in_cos_alpha_d_alpha
+        * s.d_cos_alpha_d_alpha + s.slope_of_g_velocity_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha; // ft/s^2/rad^2
+    hessian.velocity.alpha.alpha =
         s.slope_of_velocity_rate_printed_in_cos_alpha * d2_cos_alpha_d_alpha_d_alpha
         + d2_f_velocity_d_alpha_d_alpha
         + u.phi * d2_g_velocity_d_alpha_d_alpha; // ft/s^2/rad^2
-
-    hessian.velocity_by_alpha_velocity = d2_velocity_rate_printed_d_velocity_d_alpha;
-    hessian.velocity_by_alpha_altitude = d2_velocity_rate_printed_d_altitude_d_alpha;
-    hessian.velocity_by_alpha_alpha = d2_velocity_rate_printed_d_alpha_d_alpha;
 }
 
 /// Entries of [`hessian_values`]: derivatives by alpha in row gamma.
 #[inline(always)]
 fn hessian_by_alpha_of_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
-    let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0)
-        * i.cos_alpha;
+    let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0) * i.cos_alpha;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = i.turn_factor
         * p.c_t_eta_1_inv_omega_1_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = i.turn_factor
@@ -600,7 +474,7 @@ fn hessian_by_alpha_of_gamma<R: Real>(
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_velocity_d_alpha; // 1/ft
     let d2_g_gamma_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * h.d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/ft/rad
-    let d2_gamma_rate_printed_d_velocity_d_alpha = s.d_g_gamma_d_velocity
+    hessian.gamma.alpha.velocity = s.d_g_gamma_d_velocity
         + s.d_turn_factor_d_velocity * h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_velocity_d_alpha
         + x.alpha * d2_g_gamma_d_velocity_d_alpha; // 1/ft
@@ -616,7 +490,7 @@ fn hessian_by_alpha_of_gamma<R: Real>(
         * d_slope_of_f_gamma_in_turn_factor_d_alpha + d2_f_gamma_eta_d_altitude_d_alpha; // 1/s/ft
     let d2_g_gamma_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * h.d_slope_of_g_gamma_in_turn_factor_d_alpha; // 1/s/ft/rad
-    let d2_gamma_rate_printed_d_altitude_d_alpha = s.d_g_gamma_d_altitude
+    hessian.gamma.alpha.altitude = s.d_g_gamma_d_altitude
         + s.d_turn_factor_d_altitude * h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha
         + d2_f_gamma_d_altitude_d_alpha
         + x.alpha * d2_g_gamma_d_altitude_d_alpha; // 1/s/ft
@@ -629,39 +503,28 @@ fn hessian_by_alpha_of_gamma<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_alpha_d_alpha
         + s.slope_of_f_gamma_eta_in_sin_alpha * s.d_cos_alpha_d_alpha
         + i.cos_alpha * h.d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s/rad
-    let d2_f_gamma_d_alpha_d_alpha = s.slope_of_f_gamma_in_sin_alpha
-        * s.d_cos_alpha_d_alpha + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
-    let d2_g_gamma_d_alpha_d_alpha = s.slope_of_g_gamma_in_sin_alpha
-        * s.d_cos_alpha_d_alpha; // 1/s/rad^2
-    let d2_gamma_rate_printed_d_alpha_d_alpha = R::TWO * s.d_g_gamma_d_alpha
+    let d2_f_gamma_d_alpha_d_alpha = s.slope_of_f_gamma_in_sin_alpha * s.d_cos_alpha_d_alpha
+        + d2_f_gamma_eta_d_alpha_d_alpha; // 1/s/rad
+    let d2_g_gamma_d_alpha_d_alpha = s.slope_of_g_gamma_in_sin_alpha * s.d_cos_alpha_d_alpha; // 1/s/rad^2
+    hessian.gamma.alpha.alpha = R::TWO * s.d_g_gamma_d_alpha
         + s.slope_of_gamma_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
         + d2_f_gamma_d_alpha_d_alpha
         + x.alpha * d2_g_gamma_d_alpha_d_alpha; // 1/s/rad
-
-    hessian.gamma_by_alpha_velocity = d2_gamma_rate_printed_d_velocity_d_alpha;
-    hessian.gamma_by_alpha_altitude = d2_gamma_rate_printed_d_altitude_d_alpha;
-    hessian.gamma_by_alpha_alpha = d2_gamma_rate_printed_d_alpha_d_alpha;
 }
 
 /// Entries of [`hessian_values`]: derivatives by alpha in row alpha, alpha in row pitch_rate.
 #[inline(always)]
 fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
     // Derivatives with respect to alpha
-    let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -h
-        .d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
+    let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
         + i.sin_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi
         + i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
             * i.cos_alpha);
-    let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -h
-        .d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
+    let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -h
         .d2_gamma_rate_printed_d_alpha_d_chi_1 * p.inv_omega_1_2; // s/ft^0.5/slug^0.5
     let d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha = -h
@@ -678,10 +541,10 @@ fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
         + s.d_generalized_force_3_d_velocity * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha; // 1/ft
     let d2_f_alpha_d_velocity_d_alpha = s.d_turn_factor_d_velocity
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_velocity_d_alpha; // 1/ft
-    let d2_alpha_rate_printed_d_velocity_d_alpha = s.d_turn_factor_d_velocity
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
-        + d2_f_alpha_d_velocity_d_alpha; // 1/ft
-    let d2_f_alpha_eta_d_altitude_d_alpha = s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
+    hessian.alpha.alpha.velocity = s.d_turn_factor_d_velocity
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha + d2_f_alpha_d_velocity_d_alpha; // 1/ft
+    let d2_f_alpha_eta_d_altitude_d_alpha =
+        s.d_turn_factor_d_altitude * d_slope_of_f_alpha_eta_in_turn_factor_d_alpha
         + s.d_generalized_force_1_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha
         + s.d_generalized_force_2_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_2_d_alpha
         + s.d_generalized_force_3_d_altitude * d_slope_of_f_alpha_eta_in_generalized_force_3_d_alpha
@@ -690,9 +553,8 @@ fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * h.d2_generalized_force_3_d_altitude_d_alpha; // 1/s/ft
     let d2_f_alpha_d_altitude_d_alpha = s.d_turn_factor_d_altitude
         * d_slope_of_f_alpha_in_turn_factor_d_alpha + d2_f_alpha_eta_d_altitude_d_alpha; // 1/s/ft
-    let d2_alpha_rate_printed_d_altitude_d_alpha = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha
-        + d2_f_alpha_d_altitude_d_alpha; // 1/s/ft
+    hessian.alpha.alpha.altitude = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha + d2_f_alpha_d_altitude_d_alpha; // 1/s/ft
     let d_slope_of_f_alpha_eta_in_sin_alpha_d_alpha = -h
         .d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha; // 1/s
     let d2_f_alpha_eta_d_alpha_d_alpha =
@@ -708,8 +570,7 @@ fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
         - s.d_g_gamma_d_alpha
         + h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
-    let d2_alpha_rate_printed_d_alpha_d_alpha = s
-        .slope_of_alpha_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
+    hessian.alpha.alpha.alpha = s.slope_of_alpha_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
         + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
     let d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha = p.s_over_i_yy
         * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
@@ -723,185 +584,141 @@ fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_velocity_d_alpha
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_velocity_d_alpha
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_velocity_d_alpha; // 1/s/ft
-    let d2_f_pitch_rate_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
+    hessian.pitch_rate.alpha.velocity = s.d_dynamic_pressure_d_velocity
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_velocity_d_alpha; // 1/s/ft
+    // 1/s^2/ft
     let d2_f_pitch_rate_eta_d_altitude_d_alpha =
         s.d_reference_force_d_altitude * p.inv_i_yy * d2_f_pitch_rate_eta_d_velocity_d_alpha_term_1
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_altitude_d_alpha
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_altitude_d_alpha
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_altitude_d_alpha;
-    let d2_f_pitch_rate_d_altitude_d_alpha = s.d_dynamic_pressure_d_altitude
+    hessian.pitch_rate.alpha.altitude = s.d_dynamic_pressure_d_altitude
         * d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha
         + d2_f_pitch_rate_eta_d_altitude_d_alpha; // 1/s^2/ft
     let d2_f_pitch_rate_eta_d_alpha_d_alpha =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * h.d2_generalized_force_1_d_alpha_d_alpha
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * h.d2_generalized_force_2_d_alpha_d_alpha
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * h.d2_generalized_force_3_d_alpha_d_alpha; // 1/s^2/rad
-    let d2_f_pitch_rate_d_alpha_d_alpha = i.reference_force
-        * p.two_c_bar_c_m_alpha_2_over_i_yy + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
-
-    hessian.alpha_by_alpha_velocity = d2_alpha_rate_printed_d_velocity_d_alpha;
-    hessian.alpha_by_alpha_altitude = d2_alpha_rate_printed_d_altitude_d_alpha;
-    hessian.alpha_by_alpha_alpha = d2_alpha_rate_printed_d_alpha_d_alpha;
-    hessian.pitch_rate_by_alpha_velocity = d2_f_pitch_rate_d_velocity_d_alpha;
-    hessian.pitch_rate_by_alpha_altitude = d2_f_pitch_rate_d_altitude_d_alpha;
-    hessian.pitch_rate_by_alpha_alpha = d2_f_pitch_rate_d_alpha_d_alpha;
+    hessian.pitch_rate.alpha.alpha = i.reference_force * p.two_c_bar_c_m_alpha_2_over_i_yy
+        + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 }
 
 /// Entries of [`hessian_values`]: derivatives by chi_1, chi_2.
 #[inline(always)]
 fn hessian_by_chi_1_chi_2<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
     // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
+    hessian.velocity.chi_1.velocity = s.d_reference_force_d_velocity
         * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
+    hessian.velocity.chi_2.velocity = s.d_reference_force_d_velocity
         * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_1
-    let d2_velocity_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
+    hessian.velocity.chi_1.altitude = s.d_reference_force_d_altitude
         * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_velocity_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
+    hessian.velocity.chi_2.altitude = s.d_reference_force_d_altitude
         * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_1
     let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
         * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha
+    hessian.velocity.chi_1.alpha = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
         * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha
+    hessian.velocity.chi_2.alpha = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
 
     // Derivatives with respect to chi_1
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
         .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
+    hessian.alpha.chi_1.velocity = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -i
         .sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
+    hessian.alpha.chi_2.velocity = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_1
-    let d2_alpha_rate_printed_d_altitude_d_chi_1 = s.d_turn_factor_d_altitude
+    hessian.alpha.chi_1.altitude = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_alpha_rate_printed_d_altitude_d_chi_2 = s.d_turn_factor_d_altitude
+    hessian.alpha.chi_2.altitude = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_1
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor
-        * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_1 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
+    hessian.alpha.chi_1.alpha = i.cos_alpha * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor
-        * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_2 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
+    hessian.alpha.chi_2.alpha = i.cos_alpha * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to chi_1
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_1 = s.d_reference_force_d_velocity
+    hessian.pitch_rate.chi_1.velocity = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_2 = s.d_reference_force_d_velocity
+    hessian.pitch_rate.chi_2.velocity = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_1
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_1 = s.d_reference_force_d_altitude
+    hessian.pitch_rate.chi_1.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
     // Derivatives with respect to chi_2
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_2 = s.d_reference_force_d_altitude
+    hessian.pitch_rate.chi_2.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_chi_1_velocity = d2_velocity_rate_printed_d_velocity_d_chi_1;
-    hessian.velocity_by_chi_1_altitude = d2_velocity_rate_printed_d_altitude_d_chi_1;
-    hessian.velocity_by_chi_1_alpha = d2_velocity_rate_printed_d_alpha_d_chi_1;
-    hessian.gamma_by_chi_1_velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_1;
-    hessian.gamma_by_chi_1_altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_1;
-    hessian.gamma_by_chi_1_alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_1;
-    hessian.alpha_by_chi_1_velocity = d2_alpha_rate_printed_d_velocity_d_chi_1;
-    hessian.alpha_by_chi_1_altitude = d2_alpha_rate_printed_d_altitude_d_chi_1;
-    hessian.alpha_by_chi_1_alpha = d2_alpha_rate_printed_d_alpha_d_chi_1;
-    hessian.pitch_rate_by_chi_1_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_1;
-    hessian.pitch_rate_by_chi_1_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_1;
-    hessian.velocity_by_chi_2_velocity = d2_velocity_rate_printed_d_velocity_d_chi_2;
-    hessian.velocity_by_chi_2_altitude = d2_velocity_rate_printed_d_altitude_d_chi_2;
-    hessian.velocity_by_chi_2_alpha = d2_velocity_rate_printed_d_alpha_d_chi_2;
-    hessian.gamma_by_chi_2_velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_2;
-    hessian.gamma_by_chi_2_altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_2;
-    hessian.gamma_by_chi_2_alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_2;
-    hessian.alpha_by_chi_2_velocity = d2_alpha_rate_printed_d_velocity_d_chi_2;
-    hessian.alpha_by_chi_2_altitude = d2_alpha_rate_printed_d_altitude_d_chi_2;
-    hessian.alpha_by_chi_2_alpha = d2_alpha_rate_printed_d_alpha_d_chi_2;
-    hessian.pitch_rate_by_chi_2_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_2;
-    hessian.pitch_rate_by_chi_2_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_2;
+    hessian.gamma.chi_1.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_1;
+    hessian.gamma.chi_1.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_1;
+    hessian.gamma.chi_1.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_1;
+    hessian.gamma.chi_2.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_2;
+    hessian.gamma.chi_2.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_2;
+    hessian.gamma.chi_2.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_2;
 }
 
 /// Entries of [`hessian_values`]: derivatives by chi_3.
 #[inline(always)]
 fn hessian_by_chi_3<R: Real>(
-    hessian: &mut HessianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
     // Derivatives with respect to chi_3
-    let d2_velocity_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+    hessian.velocity.chi_3.velocity = s.d_reference_force_d_velocity
         * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-    let d2_velocity_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+    hessian.velocity.chi_3.altitude = s.d_reference_force_d_altitude
         * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
     let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3 = i.reference_force
         * p.c_t_eta_3_over_m; // ft^0.5/s^2/slug^0.5
-    let d2_velocity_rate_printed_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha
+    hessian.velocity.chi_3.alpha = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_3; // ft^0.5/s^2/rad/slug^0.5
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3 = -i
         .sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_velocity_d_chi_3 = s.d_turn_factor_d_velocity
+    hessian.alpha.chi_3.velocity = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/ft^1.5/slug^0.5
-    let d2_alpha_rate_printed_d_altitude_d_chi_3 = s.d_turn_factor_d_altitude
+    hessian.alpha.chi_3.altitude = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_3; // rad/s/ft^1.5/slug^0.5
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor
-        * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
-    let d2_alpha_rate_printed_d_alpha_d_chi_3 = i.cos_alpha
-        * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
-    let d2_pitch_rate_rate_printed_d_velocity_d_chi_3 = s.d_reference_force_d_velocity
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3 = -i.turn_factor * p.c_t_eta_3; // rad/s/ft^0.5/slug^0.5
+    hessian.alpha.chi_3.alpha = i.cos_alpha * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_3; // 1/s/ft^0.5/slug^0.5
+    hessian.pitch_rate.chi_3.velocity = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
-    let d2_pitch_rate_rate_printed_d_altitude_d_chi_3 = s.d_reference_force_d_altitude
+    hessian.pitch_rate.chi_3.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
 
-    hessian.velocity_by_chi_3_velocity = d2_velocity_rate_printed_d_velocity_d_chi_3;
-    hessian.velocity_by_chi_3_altitude = d2_velocity_rate_printed_d_altitude_d_chi_3;
-    hessian.velocity_by_chi_3_alpha = d2_velocity_rate_printed_d_alpha_d_chi_3;
-    hessian.gamma_by_chi_3_velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_3;
-    hessian.gamma_by_chi_3_altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_3;
-    hessian.gamma_by_chi_3_alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_3;
-    hessian.alpha_by_chi_3_velocity = d2_alpha_rate_printed_d_velocity_d_chi_3;
-    hessian.alpha_by_chi_3_altitude = d2_alpha_rate_printed_d_altitude_d_chi_3;
-    hessian.alpha_by_chi_3_alpha = d2_alpha_rate_printed_d_alpha_d_chi_3;
-    hessian.pitch_rate_by_chi_3_velocity = d2_pitch_rate_rate_printed_d_velocity_d_chi_3;
-    hessian.pitch_rate_by_chi_3_altitude = d2_pitch_rate_rate_printed_d_altitude_d_chi_3;
+    hessian.gamma.chi_3.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_3;
+    hessian.gamma.chi_3.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_3;
+    hessian.gamma.chi_3.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_3;
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
@@ -910,11 +727,7 @@ fn hessian_by_chi_3<R: Real>(
 ///
 /// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn hessian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> HessianEntries<R> {
+pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);

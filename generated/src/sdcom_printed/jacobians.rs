@@ -3,77 +3,38 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{
-    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian,
-    drift_from, intermediates, slopes,
+    Input, InputJacobian, Intermediates, Prepared, Slopes, State, StateJacobian, drift_from, intermediates, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`StateJacobian`].
-    pub struct StateJacobianEntries, STATE_JACOBIAN_PATTERN: State<State> {
-        velocity_by_velocity: velocity.velocity,
-        velocity_by_altitude: velocity.altitude,
-        velocity_by_gamma: velocity.gamma,
-        velocity_by_alpha: velocity.alpha,
-        velocity_by_chi_1: velocity.chi_1,
-        velocity_by_chi_2: velocity.chi_2,
-        velocity_by_chi_3: velocity.chi_3,
-        altitude_by_velocity: altitude.velocity,
-        altitude_by_gamma: altitude.gamma,
-        gamma_by_velocity: gamma.velocity,
-        gamma_by_altitude: gamma.altitude,
-        gamma_by_gamma: gamma.gamma,
-        gamma_by_alpha: gamma.alpha,
-        gamma_by_chi_1: gamma.chi_1,
-        gamma_by_chi_2: gamma.chi_2,
-        gamma_by_chi_3: gamma.chi_3,
-        alpha_by_velocity: alpha.velocity,
-        alpha_by_altitude: alpha.altitude,
-        alpha_by_gamma: alpha.gamma,
-        alpha_by_alpha: alpha.alpha,
-        alpha_by_pitch_rate: alpha.pitch_rate,
-        alpha_by_chi_1: alpha.chi_1,
-        alpha_by_chi_2: alpha.chi_2,
-        alpha_by_chi_3: alpha.chi_3,
-        pitch_rate_by_velocity: pitch_rate.velocity,
-        pitch_rate_by_altitude: pitch_rate.altitude,
-        pitch_rate_by_alpha: pitch_rate.alpha,
-        pitch_rate_by_chi_1: pitch_rate.chi_1,
-        pitch_rate_by_chi_2: pitch_rate.chi_2,
-        pitch_rate_by_chi_3: pitch_rate.chi_3,
-        chi_1_by_chi_1: chi_1.chi_1,
-        chi_2_by_chi_2: chi_2.chi_2,
-        chi_3_by_chi_3: chi_3.chi_3,
+    pub struct StateJacobianEntries in state_jacobian_entries, STATE_JACOBIAN_PATTERN: State<State> {
+        velocity { velocity, altitude, gamma, alpha, chi_1, chi_2, chi_3 }
+        altitude { velocity, gamma }
+        gamma { velocity, altitude, gamma, alpha, chi_1, chi_2, chi_3 }
+        alpha { velocity, altitude, gamma, alpha, pitch_rate, chi_1, chi_2, chi_3 }
+        pitch_rate { velocity, altitude, alpha, chi_1, chi_2, chi_3 }
+        chi_1 { chi_1 }
+        chi_2 { chi_2 }
+        chi_3 { chi_3 }
     }
 }
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`InputJacobian`].
-    pub struct InputJacobianEntries, INPUT_JACOBIAN_PATTERN: State<Input> {
-        velocity_by_phi: velocity.phi,
-        velocity_by_delta_e: velocity.delta_e,
-        velocity_by_delta_c: velocity.delta_c,
-        gamma_by_phi: gamma.phi,
-        gamma_by_delta_e: gamma.delta_e,
-        gamma_by_delta_c: gamma.delta_c,
-        alpha_by_phi: alpha.phi,
-        alpha_by_delta_e: alpha.delta_e,
-        alpha_by_delta_c: alpha.delta_c,
-        pitch_rate_by_phi: pitch_rate.phi,
-        pitch_rate_by_delta_e: pitch_rate.delta_e,
-        pitch_rate_by_delta_c: pitch_rate.delta_c,
+    pub struct InputJacobianEntries in input_jacobian_entries, INPUT_JACOBIAN_PATTERN: State<Input> {
+        velocity { phi, delta_e, delta_c }
+        gamma { phi, delta_e, delta_c }
+        alpha { phi, delta_e, delta_c }
+        pitch_rate { phi, delta_e, delta_c }
     }
 }
 
 /// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
 fn jacobians_by_velocity<R: Real>(
-    state: &mut StateJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to velocity
@@ -90,7 +51,7 @@ fn jacobians_by_velocity<R: Real>(
         * s.d_dynamic_pressure_d_velocity + d_f_velocity_eta_d_velocity; // 1/s
     let d_g_velocity_d_velocity = s.slope_of_g_velocity_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity; // 1/s
-    let d_velocity_rate_printed_d_velocity =
+    state.velocity.velocity =
         s.d_reference_force_d_velocity * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_velocity
         + u.phi * d_g_velocity_d_velocity; // 1/s
@@ -99,24 +60,25 @@ fn jacobians_by_velocity<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_velocity
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_velocity
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_velocity; // rad/ft
-    let cos_gamma_times_d_gravity_turn_d_velocity = i.cos_gamma
-        * s.d_gravity_turn_d_velocity;
-    let d_f_gamma_d_velocity = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_velocity
+    let cos_gamma_times_d_gravity_turn_d_velocity = i.cos_gamma * s.d_gravity_turn_d_velocity;
+    let d_f_gamma_d_velocity =
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_velocity
         - cos_gamma_times_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
-    let d_gamma_rate_printed_d_velocity =
+    state.gamma.velocity =
         i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * s.d_turn_factor_d_velocity
         + d_f_gamma_d_velocity
         + x.alpha * s.d_g_gamma_d_velocity; // rad/ft
-    let d_f_alpha_eta_d_velocity = s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_velocity
+    let d_f_alpha_eta_d_velocity =
+        s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_velocity
         + s.slope_of_f_alpha_eta_in_generalized_force_1 * s.d_generalized_force_1_d_velocity
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * s.d_generalized_force_2_d_velocity
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * s.d_generalized_force_3_d_velocity; // rad/ft
     let d_f_alpha_d_velocity = cos_gamma_times_d_gravity_turn_d_velocity
         + s.slope_of_f_alpha_in_turn_factor * s.d_turn_factor_d_velocity
         + d_f_alpha_eta_d_velocity; // rad/ft
-    let d_alpha_rate_printed_d_velocity = s.slope_of_alpha_rate_printed_in_turn_factor
-        * s.d_turn_factor_d_velocity + d_f_alpha_d_velocity; // rad/ft
+    state.alpha.velocity = s.slope_of_alpha_rate_printed_in_turn_factor * s.d_turn_factor_d_velocity
+        + d_f_alpha_d_velocity; // rad/ft
     let d_f_pitch_rate_eta_d_velocity = p.inv_i_yy
         * (i.reference_force
             * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
@@ -132,26 +94,18 @@ fn jacobians_by_velocity<R: Real>(
         * s.d_dynamic_pressure_d_velocity + d_f_pitch_rate_eta_d_velocity; // rad/s/ft
     let d_g_pitch_rate_d_velocity = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_velocity; // 1/s/ft
-    let d_pitch_rate_rate_printed_d_velocity =
+    state.pitch_rate.velocity =
         s.d_reference_force_d_velocity * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
 
-    state.velocity_by_velocity = d_velocity_rate_printed_d_velocity;
-    state.altitude_by_velocity = i.sin_gamma;
-    state.gamma_by_velocity = d_gamma_rate_printed_d_velocity;
-    state.alpha_by_velocity = d_alpha_rate_printed_d_velocity;
-    state.pitch_rate_by_velocity = d_pitch_rate_rate_printed_d_velocity;
+    state.altitude.velocity = i.sin_gamma;
 }
 
 /// Entries of [`jacobians_values`]: derivatives by altitude, gamma.
 #[inline(always)]
 fn jacobians_by_altitude_gamma<R: Real>(
-    state: &mut StateJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
@@ -164,12 +118,13 @@ fn jacobians_by_altitude_gamma<R: Real>(
                 * s.d_generalized_force_3_d_altitude)
         + s.slope_of_f_velocity_eta_in_dynamic_pressure
             * s.d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_f_velocity_d_altitude = s.slope_of_f_velocity_in_dynamic_pressure * s.d_dynamic_pressure_d_altitude
+    let d_f_velocity_d_altitude =
+        s.slope_of_f_velocity_in_dynamic_pressure * s.d_dynamic_pressure_d_altitude
         - i.sin_gamma * s.d_gravity_d_altitude
         + d_f_velocity_eta_d_altitude; // 1/s^2
     let d_g_velocity_d_altitude = s.slope_of_g_velocity_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude; // 1/s^2
-    let d_velocity_rate_printed_d_altitude =
+    state.velocity.altitude =
         s.d_reference_force_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_altitude
         + u.phi * d_g_velocity_d_altitude; // 1/s^2
@@ -178,24 +133,25 @@ fn jacobians_by_altitude_gamma<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_altitude
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_altitude; // rad/s/ft
-    let cos_gamma_times_d_gravity_turn_d_altitude = i.cos_gamma
-        * s.d_gravity_turn_d_altitude;
-    let d_f_gamma_d_altitude = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_altitude
+    let cos_gamma_times_d_gravity_turn_d_altitude = i.cos_gamma * s.d_gravity_turn_d_altitude;
+    let d_f_gamma_d_altitude =
+        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_altitude
         - cos_gamma_times_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
-    let d_gamma_rate_printed_d_altitude =
+    state.gamma.altitude =
         i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * s.d_turn_factor_d_altitude
         + d_f_gamma_d_altitude
         + x.alpha * s.d_g_gamma_d_altitude; // rad/s/ft
-    let d_f_alpha_eta_d_altitude = s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_altitude
+    let d_f_alpha_eta_d_altitude =
+        s.slope_of_f_alpha_eta_in_turn_factor * s.d_turn_factor_d_altitude
         + s.slope_of_f_alpha_eta_in_generalized_force_1 * s.d_generalized_force_1_d_altitude
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * s.d_generalized_force_2_d_altitude
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * s.d_generalized_force_3_d_altitude; // rad/s/ft
     let d_f_alpha_d_altitude = cos_gamma_times_d_gravity_turn_d_altitude
         + s.slope_of_f_alpha_in_turn_factor * s.d_turn_factor_d_altitude
         + d_f_alpha_eta_d_altitude; // rad/s/ft
-    let d_alpha_rate_printed_d_altitude = s.slope_of_alpha_rate_printed_in_turn_factor
-        * s.d_turn_factor_d_altitude + d_f_alpha_d_altitude; // rad/s/ft
+    state.alpha.altitude = s.slope_of_alpha_rate_printed_in_turn_factor * s.d_turn_factor_d_altitude
+        + d_f_alpha_d_altitude; // rad/s/ft
     let d_f_pitch_rate_eta_d_altitude = p.inv_i_yy
         * (i.reference_force
             * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
@@ -211,36 +167,24 @@ fn jacobians_by_altitude_gamma<R: Real>(
         * s.d_dynamic_pressure_d_altitude + d_f_pitch_rate_eta_d_altitude; // rad/s^2/ft
     let d_g_pitch_rate_d_altitude = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * s.d_dynamic_pressure_d_altitude; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_altitude =
+    state.pitch_rate.altitude =
         s.d_reference_force_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
 
     // Derivatives with respect to gamma
-    let d_f_velocity_d_gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
-    let d_f_gamma_d_gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
-    let d_f_alpha_d_gamma = i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
+    state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    state.alpha.gamma = i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
 
-    state.velocity_by_altitude = d_velocity_rate_printed_d_altitude;
-    state.gamma_by_altitude = d_gamma_rate_printed_d_altitude;
-    state.alpha_by_altitude = d_alpha_rate_printed_d_altitude;
-    state.pitch_rate_by_altitude = d_pitch_rate_rate_printed_d_altitude;
-    state.velocity_by_gamma = d_f_velocity_d_gamma;
-    state.altitude_by_gamma = s.d_altitude_rate_d_gamma;
-    state.gamma_by_gamma = d_f_gamma_d_gamma;
-    state.alpha_by_gamma = d_f_alpha_d_gamma;
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
 }
 
 /// Entries of [`jacobians_values`]: derivatives by alpha, chi_1, chi_2, chi_3, pitch_rate, phi, delta_e.
 #[inline(always)]
 fn jacobians_by_alpha_to_delta_e<R: Real>(
-    state: &mut StateJacobianEntries<R>,
-    input: &mut InputJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, x: &State<R>, u: &Input<R>,
+    p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to alpha
     let d_f_velocity_eta_d_alpha = i.reference_force * p.inv_m
@@ -251,21 +195,21 @@ fn jacobians_by_alpha_to_delta_e<R: Real>(
             + p.inv_omega_3_2 * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
                 * s.d_generalized_force_3_d_alpha)
         + s.slope_of_f_velocity_eta_in_cos_alpha * s.d_cos_alpha_d_alpha; // ft/s^2/rad
-    let d_f_velocity_d_alpha = i.reference_force * p.inv_m * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha)
+    let d_f_velocity_d_alpha =
+        i.reference_force * p.inv_m * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha)
         + s.slope_of_f_velocity_in_cos_alpha * s.d_cos_alpha_d_alpha
         + d_f_velocity_eta_d_alpha; // ft/s^2/rad
     let d_g_velocity_d_alpha = i.reference_force * p.c_t_phi_alpha_over_m * i.cos_alpha
         + s.slope_of_g_velocity_in_cos_alpha * s.d_cos_alpha_d_alpha; // ft/s^2/rad
-    let d_velocity_rate_printed_d_alpha = s.slope_of_velocity_rate_printed_in_cos_alpha * s.d_cos_alpha_d_alpha
+    state.velocity.alpha = s.slope_of_velocity_rate_printed_in_cos_alpha * s.d_cos_alpha_d_alpha
         + d_f_velocity_d_alpha
         + u.phi * d_g_velocity_d_alpha; // ft/s^2/rad
     let d_f_gamma_eta_d_alpha = s.slope_of_f_gamma_eta_in_sin_alpha * i.cos_alpha
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * s.d_generalized_force_1_d_alpha
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * s.d_generalized_force_2_d_alpha
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_alpha; // 1/s
-    let d_f_gamma_d_alpha = s.slope_of_f_gamma_in_sin_alpha * i.cos_alpha
-        + d_f_gamma_eta_d_alpha; // 1/s
-    let d_gamma_rate_printed_d_alpha = i.g_gamma
+    let d_f_gamma_d_alpha = s.slope_of_f_gamma_in_sin_alpha * i.cos_alpha + d_f_gamma_eta_d_alpha; // 1/s
+    state.gamma.alpha = i.g_gamma
         + s.slope_of_gamma_rate_printed_in_sin_alpha * i.cos_alpha
         + d_f_gamma_d_alpha
         + x.alpha * s.d_g_gamma_d_alpha; // 1/s
@@ -276,8 +220,8 @@ fn jacobians_by_alpha_to_delta_e<R: Real>(
     let d_f_alpha_d_alpha = s.slope_of_f_alpha_in_sin_alpha * i.cos_alpha
         - i.g_gamma
         + d_f_alpha_eta_d_alpha; // 1/s
-    let d_alpha_rate_printed_d_alpha = s.slope_of_alpha_rate_printed_in_sin_alpha
-        * i.cos_alpha + d_f_alpha_d_alpha; // 1/s
+    state.alpha.alpha = s.slope_of_alpha_rate_printed_in_sin_alpha * i.cos_alpha
+        + d_f_alpha_d_alpha; // 1/s
     let d_f_pitch_rate_eta_d_alpha = i.reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
             * s.d_generalized_force_1_d_alpha
@@ -285,98 +229,77 @@ fn jacobians_by_alpha_to_delta_e<R: Real>(
                 * s.d_generalized_force_2_d_alpha
             + p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2
                 * s.d_generalized_force_3_d_alpha); // 1/s^2
-    let d_f_pitch_rate_d_alpha = i.reference_force * p.inv_i_yy
+    state.pitch_rate.alpha = i.reference_force * p.inv_i_yy
         * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha))
         + d_f_pitch_rate_eta_d_alpha; // 1/s^2
 
     // Derivatives with respect to phi
-    let d_f_alpha_d_phi = -i.turn_factor * i.sin_alpha
-        * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s
-    let d_f_pitch_rate_d_phi = i.reference_force * p.z_t_over_i_yy
-        * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s^2
+    input.alpha.phi = -i.turn_factor * i.sin_alpha * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s
+    input.pitch_rate.phi = i.reference_force * p.z_t_over_i_yy * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s^2
 
     // Derivatives with respect to delta_e
     let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_alpha_eta_d_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
+    input.alpha.delta_e =
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
     let d_f_pitch_rate_eta_d_delta_e =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_e
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
-    let d_pitch_rate_rate_printed_d_delta_e = i.g_pitch_rate
-        + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
+    input.pitch_rate.delta_e = i.g_pitch_rate + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
 
-    state.velocity_by_alpha = d_velocity_rate_printed_d_alpha;
-    state.gamma_by_alpha = d_gamma_rate_printed_d_alpha;
-    state.alpha_by_alpha = d_alpha_rate_printed_d_alpha;
-    state.pitch_rate_by_alpha = d_f_pitch_rate_d_alpha;
-    state.velocity_by_chi_1 = s.d_velocity_rate_printed_d_chi_1;
-    state.gamma_by_chi_1 = s.d_gamma_rate_printed_d_chi_1;
-    state.alpha_by_chi_1 = s.d_alpha_rate_printed_d_chi_1;
-    state.pitch_rate_by_chi_1 = s.d_pitch_rate_rate_printed_d_chi_1;
-    state.chi_1_by_chi_1 = p.minus_chi_decay_1;
-    state.velocity_by_chi_2 = s.d_velocity_rate_printed_d_chi_2;
-    state.gamma_by_chi_2 = s.d_gamma_rate_printed_d_chi_2;
-    state.alpha_by_chi_2 = s.d_alpha_rate_printed_d_chi_2;
-    state.pitch_rate_by_chi_2 = s.d_pitch_rate_rate_printed_d_chi_2;
-    state.chi_2_by_chi_2 = p.minus_chi_decay_2;
-    state.velocity_by_chi_3 = s.d_velocity_rate_printed_d_chi_3;
-    state.gamma_by_chi_3 = s.d_gamma_rate_printed_d_chi_3;
-    state.alpha_by_chi_3 = s.d_alpha_rate_printed_d_chi_3;
-    state.pitch_rate_by_chi_3 = s.d_pitch_rate_rate_printed_d_chi_3;
-    state.chi_3_by_chi_3 = p.minus_chi_decay_3;
-    state.alpha_by_pitch_rate = R::ONE;
-    input.velocity_by_phi = i.g_velocity;
-    input.gamma_by_phi = s.d_gamma_rate_printed_d_phi;
-    input.alpha_by_phi = d_f_alpha_d_phi;
-    input.pitch_rate_by_phi = d_f_pitch_rate_d_phi;
-    input.velocity_by_delta_e = s.d_f_velocity_d_delta_e;
-    input.gamma_by_delta_e = s.d_f_gamma_eta_d_delta_e;
-    input.alpha_by_delta_e = d_f_alpha_eta_d_delta_e;
-    input.pitch_rate_by_delta_e = d_pitch_rate_rate_printed_d_delta_e;
+    state.velocity.chi_1 = s.d_velocity_rate_printed_d_chi_1;
+    state.gamma.chi_1 = s.d_gamma_rate_printed_d_chi_1;
+    state.alpha.chi_1 = s.d_alpha_rate_printed_d_chi_1;
+    state.pitch_rate.chi_1 = s.d_pitch_rate_rate_printed_d_chi_1;
+    state.chi_1.chi_1 = p.minus_chi_decay_1;
+    state.velocity.chi_2 = s.d_velocity_rate_printed_d_chi_2;
+    state.gamma.chi_2 = s.d_gamma_rate_printed_d_chi_2;
+    state.alpha.chi_2 = s.d_alpha_rate_printed_d_chi_2;
+    state.pitch_rate.chi_2 = s.d_pitch_rate_rate_printed_d_chi_2;
+    state.chi_2.chi_2 = p.minus_chi_decay_2;
+    state.velocity.chi_3 = s.d_velocity_rate_printed_d_chi_3;
+    state.gamma.chi_3 = s.d_gamma_rate_printed_d_chi_3;
+    state.alpha.chi_3 = s.d_alpha_rate_printed_d_chi_3;
+    state.pitch_rate.chi_3 = s.d_pitch_rate_rate_printed_d_chi_3;
+    state.chi_3.chi_3 = p.minus_chi_decay_3;
+    state.alpha.pitch_rate = R::ONE;
+    input.velocity.phi = i.g_velocity;
+    input.gamma.phi = s.d_gamma_rate_printed_d_phi;
+    input.velocity.delta_e = s.d_f_velocity_d_delta_e;
+    input.gamma.delta_e = s.d_f_gamma_eta_d_delta_e;
 }
 
 /// Entries of [`jacobians_values`]: derivatives by delta_c.
 #[inline(always)]
 fn jacobians_by_delta_c<R: Real>(
-    input: &mut InputJacobianEntries<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_f_alpha_eta_d_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
+    let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    input.alpha.delta_c =
+        s.slope_of_f_alpha_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
-    let d_f_pitch_rate_eta_d_delta_c =
+    input.pitch_rate.delta_c =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
 
-    input.velocity_by_delta_c = s.d_f_velocity_eta_d_delta_c;
-    input.gamma_by_delta_c = s.d_f_gamma_eta_d_delta_c;
-    input.alpha_by_delta_c = d_f_alpha_eta_d_delta_c;
-    input.pitch_rate_by_delta_c = d_f_pitch_rate_eta_d_delta_c;
+    input.velocity.delta_c = s.d_f_velocity_eta_d_delta_c;
+    input.gamma.delta_c = s.d_f_gamma_eta_d_delta_c;
 }
 
 /// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
@@ -394,9 +317,7 @@ pub fn jacobians_values_from<R: Real>(
 /// 495 operations: 157 additions, 333 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -405,11 +326,7 @@ pub fn jacobians_values<R: Real>(
 
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 #[inline(always)]
-pub fn jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> (StateJacobian<R>, InputJacobian<R>) {
+pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (StateJacobian<R>, InputJacobian<R>) {
     let (state, input) = jacobians_values(x, u, p);
     (state.dense(), input.dense())
 }
@@ -422,9 +339,7 @@ pub fn jacobians<R: Real>(
 /// 538 operations: 174 additions, 359 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
@@ -437,9 +352,7 @@ pub fn drift_and_jacobians_values<R: Real>(
 /// for less than one after the other, eq. (27).
 #[inline(always)]
 pub fn drift_and_jacobians<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>,
 ) -> (State<R>, StateJacobian<R>, InputJacobian<R>) {
     let (drift, state, input) = drift_and_jacobians_values(x, u, p);
     (drift, state.dense(), input.dense())

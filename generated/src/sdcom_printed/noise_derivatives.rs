@@ -2,28 +2,17 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{
-    Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates,
-    noise_slopes, slopes,
-};
-
+use super::{Input, Noise, NoiseDerivatives, Prepared, State, curvatures, intermediates, noise_slopes, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`NoiseDerivatives`].
-    pub struct NoiseDerivativesEntries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
-        velocity_by_w_gamma_w_alpha: velocity.w_gamma.w_alpha,
-        velocity_by_w_alpha_w_alpha: velocity.w_alpha.w_alpha,
-        velocity_by_w_q_w_alpha: velocity.w_q.w_alpha,
-        altitude_by_w_alpha_w_gamma: altitude.w_alpha.w_gamma,
-        gamma_by_w_gamma_w_alpha: gamma.w_gamma.w_alpha,
-        gamma_by_w_alpha_w_alpha: gamma.w_alpha.w_alpha,
-        gamma_by_w_q_w_alpha: gamma.w_q.w_alpha,
-        alpha_by_w_gamma_w_alpha: alpha.w_gamma.w_alpha,
-        alpha_by_w_alpha_w_alpha: alpha.w_alpha.w_alpha,
-        alpha_by_w_q_w_alpha: alpha.w_q.w_alpha,
-        pitch_rate_by_w_gamma_w_alpha: pitch_rate.w_gamma.w_alpha,
-        pitch_rate_by_w_alpha_w_alpha: pitch_rate.w_alpha.w_alpha,
+    pub struct NoiseDerivativesEntries in noise_derivatives_entries, NOISE_DERIVATIVES_PATTERN: State<Noise<Noise>> {
+        velocity { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
+        altitude { w_alpha { w_gamma } }
+        gamma { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
+        alpha { w_gamma { w_alpha } w_alpha { w_alpha } w_q { w_alpha } }
+        pitch_rate { w_gamma { w_alpha } w_alpha { w_alpha } }
     }
 }
 
@@ -33,63 +22,48 @@ ahv_core::entries! {
 ///
 /// 76 operations: 8 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
-pub fn noise_derivatives_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivativesEntries<R> {
+pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
     let m = noise_slopes(x, u, p, &i, &s, &h);
+    let mut noise_derivatives = NoiseDerivativesEntries::splat(R::ZERO);
 
     // Derivatives with respect to altitude
     let d_alpha_slope_velocity_d_altitude = (h.d_slope_of_g_gamma_in_turn_factor_d_alpha
         - p.c_d_alpha) * s.d_reference_force_d_altitude * p.inv_m; // 1/s^2/rad
-    let slope_of_alpha_slope_alpha_in_turn_factor = -i
-        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
     let d_alpha_slope_alpha_d_altitude = slope_of_alpha_slope_alpha_in_turn_factor
         * s.d_turn_factor_d_altitude; // 1/s/ft
     let d_alpha_slope_pitch_rate_d_altitude = m
         .c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t
         * s.d_reference_force_d_altitude * p.inv_i_yy; // 1/s^2/ft
 
-    NoiseDerivativesEntries {
-        velocity_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * d_alpha_slope_velocity_d_altitude * x.velocity,
-        velocity_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d_alpha_slope_velocity_d_velocity * m.alpha_slope_velocity
-                + m.d_alpha_slope_velocity_d_alpha * m.alpha_slope_alpha),
-        velocity_by_w_q_w_alpha: p.w_alpha_w_q * m.d_alpha_slope_velocity_d_alpha,
-        altitude_by_w_alpha_w_gamma: p.w_alpha_w_gamma * m.alpha_slope_velocity,
-        gamma_by_w_gamma_w_alpha: p.w_alpha_w_gamma * s.d_g_gamma_d_altitude
-            * x.velocity,
-        gamma_by_w_alpha_w_alpha: p.w_alpha_2
-            * (s.d_g_gamma_d_velocity * m.alpha_slope_velocity
-                + s.d_g_gamma_d_alpha * m.alpha_slope_alpha),
-        gamma_by_w_q_w_alpha: p.w_alpha_w_q * s.d_g_gamma_d_alpha,
-        alpha_by_w_gamma_w_alpha: p.w_alpha_w_gamma * d_alpha_slope_alpha_d_altitude
-            * x.velocity,
-        alpha_by_w_alpha_w_alpha: p.w_alpha_2
-            * (m.d_alpha_slope_alpha_d_velocity * m.alpha_slope_velocity
-                + h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
-                    * m.alpha_slope_alpha),
-        alpha_by_w_q_w_alpha: p.w_alpha_w_q
-            * h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha,
-        pitch_rate_by_w_gamma_w_alpha: p.w_alpha_w_gamma
-            * d_alpha_slope_pitch_rate_d_altitude * x.velocity,
-        pitch_rate_by_w_alpha_w_alpha: p.w_alpha_2
-            * m.d_alpha_slope_pitch_rate_d_velocity * m.alpha_slope_velocity,
-    }
+    noise_derivatives.velocity.w_gamma.w_alpha = p.w_alpha_w_gamma * d_alpha_slope_velocity_d_altitude * x.velocity;
+    noise_derivatives.velocity.w_alpha.w_alpha = p.w_alpha_2
+        * (m.d_alpha_slope_velocity_d_velocity * m.alpha_slope_velocity
+            + m.d_alpha_slope_velocity_d_alpha * m.alpha_slope_alpha);
+    noise_derivatives.velocity.w_q.w_alpha = p.w_alpha_w_q * m.d_alpha_slope_velocity_d_alpha;
+    noise_derivatives.altitude.w_alpha.w_gamma = p.w_alpha_w_gamma * m.alpha_slope_velocity;
+    noise_derivatives.gamma.w_gamma.w_alpha = p.w_alpha_w_gamma * s.d_g_gamma_d_altitude * x.velocity;
+    noise_derivatives.gamma.w_alpha.w_alpha = p.w_alpha_2
+        * (s.d_g_gamma_d_velocity * m.alpha_slope_velocity + s.d_g_gamma_d_alpha * m.alpha_slope_alpha);
+    noise_derivatives.gamma.w_q.w_alpha = p.w_alpha_w_q * s.d_g_gamma_d_alpha;
+    noise_derivatives.alpha.w_gamma.w_alpha = p.w_alpha_w_gamma * d_alpha_slope_alpha_d_altitude * x.velocity;
+    noise_derivatives.alpha.w_alpha.w_alpha = p.w_alpha_2
+        * (m.d_alpha_slope_alpha_d_velocity * m.alpha_slope_velocity
+            + h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha
+                * m.alpha_slope_alpha);
+    noise_derivatives.alpha.w_q.w_alpha = p.w_alpha_w_q * h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha;
+    noise_derivatives.pitch_rate.w_gamma.w_alpha = p.w_alpha_w_gamma * d_alpha_slope_pitch_rate_d_altitude * x.velocity;
+    noise_derivatives.pitch_rate.w_alpha.w_alpha = p.w_alpha_2 * m.d_alpha_slope_pitch_rate_d_velocity
+        * m.alpha_slope_velocity;
+    noise_derivatives
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 #[inline(always)]
-pub fn noise_derivatives<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> NoiseDerivatives<R> {
+pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivatives<R> {
     noise_derivatives_values(x, u, p).dense()
 }
 

@@ -2,10 +2,7 @@
 
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
-use super::{
-    Input, Outputs, Prepared, State, curvatures, intermediates, sensitivities, slopes,
-};
-
+use super::{Input, Outputs, Prepared, State, curvatures, intermediates, sensitivities, slopes};
 use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.

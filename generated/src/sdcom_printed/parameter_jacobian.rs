@@ -3,207 +3,52 @@
 //! Functions of SDCOM_PRINTED. Units are foot, slug, second and radian.
 
 use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes,
-    State, curvatures, intermediates, sensitivities, slopes,
+    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes, State, curvatures,
+    intermediates, sensitivities, slopes,
 };
-
 use ahv_core::Real;
 
 ahv_core::entries! {
     /// The structurally non-zero entries of a [`ParameterJacobian`].
-    pub struct ParameterJacobianEntries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
-        velocity_by_m: velocity.m,
-        velocity_by_s: velocity.s,
-        velocity_by_rho_0: velocity.rho_0,
-        velocity_by_h_0: velocity.h_0,
-        velocity_by_h_s: velocity.h_s,
-        velocity_by_g: velocity.g,
-        velocity_by_r_e: velocity.r_e,
-        velocity_by_omega_1: velocity.omega_1,
-        velocity_by_omega_2: velocity.omega_2,
-        velocity_by_omega_3: velocity.omega_3,
-        velocity_by_canard_command: velocity.canard_command,
-        velocity_by_canard_slaving: velocity.canard_slaving,
-        velocity_by_spherical_earth: velocity.spherical_earth,
-        velocity_by_c_t_phi_alpha: velocity.c_t_phi_alpha,
-        velocity_by_c_t_phi: velocity.c_t_phi,
-        velocity_by_c_t_alpha: velocity.c_t_alpha,
-        velocity_by_c_t_0: velocity.c_t_0,
-        velocity_by_c_t_eta_1: velocity.c_t_eta_1,
-        velocity_by_c_t_eta_2: velocity.c_t_eta_2,
-        velocity_by_c_t_eta_3: velocity.c_t_eta_3,
-        velocity_by_c_l_delta_e: velocity.c_l_delta_e,
-        velocity_by_c_l_delta_c: velocity.c_l_delta_c,
-        velocity_by_c_d_alpha: velocity.c_d_alpha,
-        velocity_by_c_d_delta_e: velocity.c_d_delta_e,
-        velocity_by_c_d_delta_c: velocity.c_d_delta_c,
-        velocity_by_c_d_0: velocity.c_d_0,
-        velocity_by_c_d_eta_1: velocity.c_d_eta_1,
-        velocity_by_c_d_eta_2: velocity.c_d_eta_2,
-        velocity_by_c_d_eta_3: velocity.c_d_eta_3,
-        velocity_by_c_n_1_alpha_2: velocity.c_n_1_alpha_2,
-        velocity_by_c_n_1_alpha: velocity.c_n_1_alpha,
-        velocity_by_c_n_1_delta_e: velocity.c_n_1_delta_e,
-        velocity_by_c_n_1_delta_c: velocity.c_n_1_delta_c,
-        velocity_by_c_n_1_0: velocity.c_n_1_0,
-        velocity_by_c_n_2_alpha_2: velocity.c_n_2_alpha_2,
-        velocity_by_c_n_2_alpha: velocity.c_n_2_alpha,
-        velocity_by_c_n_2_delta_e: velocity.c_n_2_delta_e,
-        velocity_by_c_n_2_delta_c: velocity.c_n_2_delta_c,
-        velocity_by_c_n_2_0: velocity.c_n_2_0,
-        velocity_by_c_n_3_alpha_2: velocity.c_n_3_alpha_2,
-        velocity_by_c_n_3_alpha: velocity.c_n_3_alpha,
-        velocity_by_c_n_3_delta_e: velocity.c_n_3_delta_e,
-        velocity_by_c_n_3_delta_c: velocity.c_n_3_delta_c,
-        velocity_by_c_n_3_0: velocity.c_n_3_0,
-        gamma_by_m: gamma.m,
-        gamma_by_s: gamma.s,
-        gamma_by_rho_0: gamma.rho_0,
-        gamma_by_h_0: gamma.h_0,
-        gamma_by_h_s: gamma.h_s,
-        gamma_by_g: gamma.g,
-        gamma_by_r_e: gamma.r_e,
-        gamma_by_omega_1: gamma.omega_1,
-        gamma_by_omega_2: gamma.omega_2,
-        gamma_by_omega_3: gamma.omega_3,
-        gamma_by_canard_command: gamma.canard_command,
-        gamma_by_canard_slaving: gamma.canard_slaving,
-        gamma_by_spherical_earth: gamma.spherical_earth,
-        gamma_by_c_t_phi_alpha: gamma.c_t_phi_alpha,
-        gamma_by_c_t_phi: gamma.c_t_phi,
-        gamma_by_c_t_alpha: gamma.c_t_alpha,
-        gamma_by_c_t_0: gamma.c_t_0,
-        gamma_by_c_t_eta_1: gamma.c_t_eta_1,
-        gamma_by_c_t_eta_2: gamma.c_t_eta_2,
-        gamma_by_c_t_eta_3: gamma.c_t_eta_3,
-        gamma_by_c_l_alpha: gamma.c_l_alpha,
-        gamma_by_c_l_delta_e: gamma.c_l_delta_e,
-        gamma_by_c_l_delta_c: gamma.c_l_delta_c,
-        gamma_by_c_l_0: gamma.c_l_0,
-        gamma_by_c_l_eta_1: gamma.c_l_eta_1,
-        gamma_by_c_l_eta_2: gamma.c_l_eta_2,
-        gamma_by_c_l_eta_3: gamma.c_l_eta_3,
-        gamma_by_c_n_1_alpha_2: gamma.c_n_1_alpha_2,
-        gamma_by_c_n_1_alpha: gamma.c_n_1_alpha,
-        gamma_by_c_n_1_delta_e: gamma.c_n_1_delta_e,
-        gamma_by_c_n_1_delta_c: gamma.c_n_1_delta_c,
-        gamma_by_c_n_1_0: gamma.c_n_1_0,
-        gamma_by_c_n_2_alpha_2: gamma.c_n_2_alpha_2,
-        gamma_by_c_n_2_alpha: gamma.c_n_2_alpha,
-        gamma_by_c_n_2_delta_e: gamma.c_n_2_delta_e,
-        gamma_by_c_n_2_delta_c: gamma.c_n_2_delta_c,
-        gamma_by_c_n_2_0: gamma.c_n_2_0,
-        gamma_by_c_n_3_alpha_2: gamma.c_n_3_alpha_2,
-        gamma_by_c_n_3_alpha: gamma.c_n_3_alpha,
-        gamma_by_c_n_3_delta_e: gamma.c_n_3_delta_e,
-        gamma_by_c_n_3_delta_c: gamma.c_n_3_delta_c,
-        gamma_by_c_n_3_0: gamma.c_n_3_0,
-        alpha_by_m: alpha.m,
-        alpha_by_s: alpha.s,
-        alpha_by_rho_0: alpha.rho_0,
-        alpha_by_h_0: alpha.h_0,
-        alpha_by_h_s: alpha.h_s,
-        alpha_by_g: alpha.g,
-        alpha_by_r_e: alpha.r_e,
-        alpha_by_omega_1: alpha.omega_1,
-        alpha_by_omega_2: alpha.omega_2,
-        alpha_by_omega_3: alpha.omega_3,
-        alpha_by_canard_command: alpha.canard_command,
-        alpha_by_canard_slaving: alpha.canard_slaving,
-        alpha_by_spherical_earth: alpha.spherical_earth,
-        alpha_by_c_t_phi_alpha: alpha.c_t_phi_alpha,
-        alpha_by_c_t_phi: alpha.c_t_phi,
-        alpha_by_c_t_alpha: alpha.c_t_alpha,
-        alpha_by_c_t_0: alpha.c_t_0,
-        alpha_by_c_t_eta_1: alpha.c_t_eta_1,
-        alpha_by_c_t_eta_2: alpha.c_t_eta_2,
-        alpha_by_c_t_eta_3: alpha.c_t_eta_3,
-        alpha_by_c_l_alpha: alpha.c_l_alpha,
-        alpha_by_c_l_delta_e: alpha.c_l_delta_e,
-        alpha_by_c_l_delta_c: alpha.c_l_delta_c,
-        alpha_by_c_l_0: alpha.c_l_0,
-        alpha_by_c_l_eta_1: alpha.c_l_eta_1,
-        alpha_by_c_l_eta_2: alpha.c_l_eta_2,
-        alpha_by_c_l_eta_3: alpha.c_l_eta_3,
-        alpha_by_c_n_1_alpha_2: alpha.c_n_1_alpha_2,
-        alpha_by_c_n_1_alpha: alpha.c_n_1_alpha,
-        alpha_by_c_n_1_delta_e: alpha.c_n_1_delta_e,
-        alpha_by_c_n_1_delta_c: alpha.c_n_1_delta_c,
-        alpha_by_c_n_1_0: alpha.c_n_1_0,
-        alpha_by_c_n_2_alpha_2: alpha.c_n_2_alpha_2,
-        alpha_by_c_n_2_alpha: alpha.c_n_2_alpha,
-        alpha_by_c_n_2_delta_e: alpha.c_n_2_delta_e,
-        alpha_by_c_n_2_delta_c: alpha.c_n_2_delta_c,
-        alpha_by_c_n_2_0: alpha.c_n_2_0,
-        alpha_by_c_n_3_alpha_2: alpha.c_n_3_alpha_2,
-        alpha_by_c_n_3_alpha: alpha.c_n_3_alpha,
-        alpha_by_c_n_3_delta_e: alpha.c_n_3_delta_e,
-        alpha_by_c_n_3_delta_c: alpha.c_n_3_delta_c,
-        alpha_by_c_n_3_0: alpha.c_n_3_0,
-        pitch_rate_by_i_yy: pitch_rate.i_yy,
-        pitch_rate_by_s: pitch_rate.s,
-        pitch_rate_by_c_bar: pitch_rate.c_bar,
-        pitch_rate_by_z_t: pitch_rate.z_t,
-        pitch_rate_by_rho_0: pitch_rate.rho_0,
-        pitch_rate_by_h_0: pitch_rate.h_0,
-        pitch_rate_by_h_s: pitch_rate.h_s,
-        pitch_rate_by_omega_1: pitch_rate.omega_1,
-        pitch_rate_by_omega_2: pitch_rate.omega_2,
-        pitch_rate_by_omega_3: pitch_rate.omega_3,
-        pitch_rate_by_canard_command: pitch_rate.canard_command,
-        pitch_rate_by_canard_slaving: pitch_rate.canard_slaving,
-        pitch_rate_by_c_t_phi_alpha: pitch_rate.c_t_phi_alpha,
-        pitch_rate_by_c_t_phi: pitch_rate.c_t_phi,
-        pitch_rate_by_c_t_alpha: pitch_rate.c_t_alpha,
-        pitch_rate_by_c_t_0: pitch_rate.c_t_0,
-        pitch_rate_by_c_t_eta_1: pitch_rate.c_t_eta_1,
-        pitch_rate_by_c_t_eta_2: pitch_rate.c_t_eta_2,
-        pitch_rate_by_c_t_eta_3: pitch_rate.c_t_eta_3,
-        pitch_rate_by_c_l_delta_e: pitch_rate.c_l_delta_e,
-        pitch_rate_by_c_l_delta_c: pitch_rate.c_l_delta_c,
-        pitch_rate_by_c_m_alpha_2: pitch_rate.c_m_alpha_2,
-        pitch_rate_by_c_m_alpha: pitch_rate.c_m_alpha,
-        pitch_rate_by_c_m_delta_e: pitch_rate.c_m_delta_e,
-        pitch_rate_by_c_m_delta_c: pitch_rate.c_m_delta_c,
-        pitch_rate_by_c_m_0: pitch_rate.c_m_0,
-        pitch_rate_by_c_m_eta_1: pitch_rate.c_m_eta_1,
-        pitch_rate_by_c_m_eta_2: pitch_rate.c_m_eta_2,
-        pitch_rate_by_c_m_eta_3: pitch_rate.c_m_eta_3,
-        pitch_rate_by_c_n_1_alpha_2: pitch_rate.c_n_1_alpha_2,
-        pitch_rate_by_c_n_1_alpha: pitch_rate.c_n_1_alpha,
-        pitch_rate_by_c_n_1_delta_e: pitch_rate.c_n_1_delta_e,
-        pitch_rate_by_c_n_1_delta_c: pitch_rate.c_n_1_delta_c,
-        pitch_rate_by_c_n_1_0: pitch_rate.c_n_1_0,
-        pitch_rate_by_c_n_2_alpha_2: pitch_rate.c_n_2_alpha_2,
-        pitch_rate_by_c_n_2_alpha: pitch_rate.c_n_2_alpha,
-        pitch_rate_by_c_n_2_delta_e: pitch_rate.c_n_2_delta_e,
-        pitch_rate_by_c_n_2_delta_c: pitch_rate.c_n_2_delta_c,
-        pitch_rate_by_c_n_2_0: pitch_rate.c_n_2_0,
-        pitch_rate_by_c_n_3_alpha_2: pitch_rate.c_n_3_alpha_2,
-        pitch_rate_by_c_n_3_alpha: pitch_rate.c_n_3_alpha,
-        pitch_rate_by_c_n_3_delta_e: pitch_rate.c_n_3_delta_e,
-        pitch_rate_by_c_n_3_delta_c: pitch_rate.c_n_3_delta_c,
-        pitch_rate_by_c_n_3_0: pitch_rate.c_n_3_0,
-        chi_1_by_omega_1: chi_1.omega_1,
-        chi_1_by_zeta_1: chi_1.zeta_1,
-        chi_1_by_moment_matching: chi_1.moment_matching,
-        chi_2_by_omega_2: chi_2.omega_2,
-        chi_2_by_zeta_2: chi_2.zeta_2,
-        chi_2_by_moment_matching: chi_2.moment_matching,
-        chi_3_by_omega_3: chi_3.omega_3,
-        chi_3_by_zeta_3: chi_3.zeta_3,
-        chi_3_by_moment_matching: chi_3.moment_matching,
+    pub struct ParameterJacobianEntries in parameter_jacobian_entries, PARAMETER_JACOBIAN_PATTERN: State<Parameters> {
+        velocity {
+            m, s, rho_0, h_0, h_s, g, r_e, omega_1, omega_2, omega_3, canard_command, canard_slaving, spherical_earth,
+            c_t_phi_alpha, c_t_phi, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_delta_e, c_l_delta_c,
+            c_d_alpha, c_d_delta_e, c_d_delta_c, c_d_0, c_d_eta_1, c_d_eta_2, c_d_eta_3, c_n_1_alpha_2, c_n_1_alpha,
+            c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0,
+            c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        gamma {
+            m, s, rho_0, h_0, h_s, g, r_e, omega_1, omega_2, omega_3, canard_command, canard_slaving, spherical_earth,
+            c_t_phi_alpha, c_t_phi, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_alpha, c_l_delta_e,
+            c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3, c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e,
+            c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2,
+            c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        alpha {
+            m, s, rho_0, h_0, h_s, g, r_e, omega_1, omega_2, omega_3, canard_command, canard_slaving, spherical_earth,
+            c_t_phi_alpha, c_t_phi, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_alpha, c_l_delta_e,
+            c_l_delta_c, c_l_0, c_l_eta_1, c_l_eta_2, c_l_eta_3, c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e,
+            c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2,
+            c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        pitch_rate {
+            i_yy, s, c_bar, z_t, rho_0, h_0, h_s, omega_1, omega_2, omega_3, canard_command, canard_slaving,
+            c_t_phi_alpha, c_t_phi, c_t_alpha, c_t_0, c_t_eta_1, c_t_eta_2, c_t_eta_3, c_l_delta_e, c_l_delta_c,
+            c_m_alpha_2, c_m_alpha, c_m_delta_e, c_m_delta_c, c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3, c_n_1_alpha_2,
+            c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c, c_n_1_0, c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e,
+            c_n_2_delta_c, c_n_2_0, c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        }
+        chi_1 { omega_1, zeta_1, moment_matching }
+        chi_2 { omega_2, zeta_2, moment_matching }
+        chi_3 { omega_3, zeta_3, moment_matching }
     }
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
 fn parameter_jacobian_by_vehicle<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
@@ -219,9 +64,9 @@ fn parameter_jacobian_by_vehicle<R: Real>(
         - p.c_d_0;
     let d_f_velocity_d_m = d_f_velocity_eta_d_m
         - d_f_velocity_d_m_term_1 * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let d_g_velocity_d_m = -s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
-        * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let d_velocity_rate_printed_d_m = d_f_velocity_d_m
+    let d_g_velocity_d_m = -s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha * i.reference_force
+        * p.inv_m_2; // ft^2/s^2/slug
+    parameter.velocity.m = d_f_velocity_d_m
         - i.reference_force * p.inv_m_2 * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
     let d_f_gamma_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
@@ -231,29 +76,27 @@ fn parameter_jacobian_by_vehicle<R: Real>(
                     .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2); // rad*ft/s/slug
     let alpha_slope_of_g_gamma_in_turn_factor = x.alpha
         * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
-    let d_gamma_rate_printed_d_m = s.d_reference_force_d_velocity * p.inv_m_2
+    parameter.gamma.m = s.d_reference_force_d_velocity * p.inv_m_2
         * (-R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi
             - R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_m; // rad*ft/s/slug
     let d_f_alpha_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
         * (R::HALF * s.slope_of_f_alpha_in_turn_factor
             + R::HALF * s.slope_of_f_alpha_eta_in_turn_factor); // rad*ft/s/slug
-    let d_alpha_rate_printed_d_m = d_f_alpha_d_m
-        - s.slope_of_alpha_rate_printed_in_turn_factor * s.d_reference_force_d_velocity
-            * p.half_inv_m_2; // rad*ft/s/slug
+    parameter.alpha.m = d_f_alpha_d_m - s.slope_of_alpha_rate_printed_in_turn_factor
+        * s.d_reference_force_d_velocity * p.half_inv_m_2; // rad*ft/s/slug
     let d_f_pitch_rate_eta_d_i_yy = -p.inv_i_yy_2 * i.reference_force
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2; // rad/s^2/slug/ft
     let c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 = p.c_m_alpha_2 * i.alpha_2
         + p.c_m_alpha * x.alpha
         + p.c_m_0;
     let d_f_pitch_rate_d_i_yy_term_1 = p.z_t
-        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
-        + p.c_bar * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0 + p.c_bar
+        * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
     let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
         - d_f_pitch_rate_d_i_yy_term_1 * i.reference_force * p.inv_i_yy_2; // rad/s^2/slug/ft
-    let d_g_pitch_rate_d_i_yy = -p
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2
+    let d_g_pitch_rate_d_i_yy = -p.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2
         * i.reference_force; // 1/s^2/slug/ft
-    let d_pitch_rate_rate_printed_d_i_yy = d_f_pitch_rate_d_i_yy
+    parameter.pitch_rate.i_yy = d_f_pitch_rate_d_i_yy
         - p.inv_i_yy_2 * i.reference_force * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + u.delta_e * d_g_pitch_rate_d_i_yy; // rad/s^2/slug/ft
     let d_f_velocity_eta_d_s = i.dynamic_pressure
@@ -264,9 +107,10 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // 1/s^2
     let d_f_velocity_d_s = d_f_velocity_d_m_term_1 * i.dynamic_pressure * p.inv_m
         + d_f_velocity_eta_d_s; // 1/s^2
-    let d_g_velocity_d_s = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
-        * i.dynamic_pressure * p.inv_m; // 1/s^2
-    let d_velocity_rate_printed_d_s = i.dynamic_pressure * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
+    let d_g_velocity_d_s = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha * i.dynamic_pressure
+        * p.inv_m; // 1/s^2
+    parameter.velocity.s =
+        i.dynamic_pressure * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_s
         + u.phi * d_g_velocity_d_s; // 1/s^2
     let d_f_gamma_eta_d_s = i.dynamic_pressure
@@ -277,7 +121,7 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             * s.d_dynamic_pressure_d_velocity * p.half_over_m; // rad/s/ft
     let d_f_gamma_d_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
-    let d_gamma_rate_printed_d_s = s.d_dynamic_pressure_d_velocity * p.inv_m
+    parameter.gamma.s = s.d_dynamic_pressure_d_velocity * p.inv_m
         * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi
             + R::HALF * alpha_slope_of_g_gamma_in_turn_factor) + d_f_gamma_d_s; // rad/s/ft
     let d_f_alpha_eta_d_s = i.dynamic_pressure
@@ -286,9 +130,9 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + s.slope_of_f_alpha_eta_in_generalized_force_3 * i.c_n_3)
         + s.slope_of_f_alpha_eta_in_turn_factor * s.d_dynamic_pressure_d_velocity
             * p.half_over_m; // rad/s/ft
-    let d_f_alpha_d_s = s.slope_of_f_alpha_in_turn_factor
-        * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
-    let d_alpha_rate_printed_d_s = s.slope_of_alpha_rate_printed_in_turn_factor
+    let d_f_alpha_d_s = s.slope_of_f_alpha_in_turn_factor * s.d_dynamic_pressure_d_velocity
+        * p.half_over_m + d_f_alpha_eta_d_s; // rad/s/ft
+    parameter.alpha.s = s.slope_of_alpha_rate_printed_in_turn_factor
         * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_alpha_d_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_s = i.dynamic_pressure
         * (p.inv_i_yy
@@ -296,12 +140,11 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * i.c_n_1
             + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * i.c_n_2
             + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // rad/s^2/ft
-    let d_f_pitch_rate_d_s = d_f_pitch_rate_d_i_yy_term_1 * i.dynamic_pressure
-        * p.inv_i_yy + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
-    let d_g_pitch_rate_d_s = p
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy
+    let d_f_pitch_rate_d_s = d_f_pitch_rate_d_i_yy_term_1 * i.dynamic_pressure * p.inv_i_yy
+        + d_f_pitch_rate_eta_d_s; // rad/s^2/ft
+    let d_g_pitch_rate_d_s = p.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy
         * i.dynamic_pressure; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_s =
+    parameter.pitch_rate.s =
         p.inv_i_yy * i.dynamic_pressure * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_s
         + u.delta_e * d_g_pitch_rate_d_s; // rad/s^2/ft
@@ -310,11 +153,10 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + i.generalized_force_2_inv_omega_2_2 * p.c_m_eta_2
             + i.generalized_force_3_inv_omega_3_2 * p.c_m_eta_3); // rad/s^2/ft
     let d_f_pitch_rate_d_c_bar = i.reference_force * p.inv_i_yy
-        * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0
-        + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
-    let d_g_pitch_rate_d_c_bar = p
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy * i.reference_force; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_c_bar =
+        * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0 + d_f_pitch_rate_eta_d_c_bar; // rad/s^2/ft
+    let d_g_pitch_rate_d_c_bar = p.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy
+        * i.reference_force; // 1/s^2/ft
+    parameter.pitch_rate.c_bar =
         i.reference_force * p.inv_i_yy * (x.chi_1 * p.c_m_eta_1 + x.chi_2 * p.c_m_eta_2 + x.chi_3 * p.c_m_eta_3)
         + d_f_pitch_rate_d_c_bar
         + u.delta_e * d_g_pitch_rate_d_c_bar; // rad/s^2/ft
@@ -323,32 +165,16 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     let d_f_pitch_rate_d_z_t = i.reference_force * p.inv_i_yy
         * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
         + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
-    let d_pitch_rate_rate_printed_d_z_t = i.reference_force * p.inv_i_yy
-        * s.sum_of_chi_c_t_eta + d_f_pitch_rate_d_z_t; // rad/s^2/ft
-
-    parameter.velocity_by_m = d_velocity_rate_printed_d_m;
-    parameter.velocity_by_s = d_velocity_rate_printed_d_s;
-    parameter.gamma_by_m = d_gamma_rate_printed_d_m;
-    parameter.gamma_by_s = d_gamma_rate_printed_d_s;
-    parameter.alpha_by_m = d_alpha_rate_printed_d_m;
-    parameter.alpha_by_s = d_alpha_rate_printed_d_s;
-    parameter.pitch_rate_by_i_yy = d_pitch_rate_rate_printed_d_i_yy;
-    parameter.pitch_rate_by_s = d_pitch_rate_rate_printed_d_s;
-    parameter.pitch_rate_by_c_bar = d_pitch_rate_rate_printed_d_c_bar;
-    parameter.pitch_rate_by_z_t = d_pitch_rate_rate_printed_d_z_t;
+    parameter.pitch_rate.z_t = i.reference_force * p.inv_i_yy * s.sum_of_chi_c_t_eta
+        + d_f_pitch_rate_d_z_t; // rad/s^2/ft
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by environment in row velocity, environment in row
 /// gamma.
 #[inline(always)]
 fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_f_velocity_eta_d_rho_0 = i.density_ratio
@@ -360,9 +186,9 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
                 + s.d_velocity_rate_printed_d_chi_3 * p.half_inv_omega_3_2 * i.c_n_3
                     * i.velocity_2)
             + R::HALF * s.slope_of_f_velocity_eta_in_dynamic_pressure * i.velocity_2); // ft^4/s^2/slug
-    let d_f_velocity_d_rho_0 = R::HALF * s.slope_of_f_velocity_in_dynamic_pressure
-        * i.velocity_2 * i.density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
-    let d_velocity_rate_printed_d_rho_0 = i.density_ratio
+    let d_f_velocity_d_rho_0 = R::HALF * s.slope_of_f_velocity_in_dynamic_pressure * i.velocity_2
+        * i.density_ratio + d_f_velocity_eta_d_rho_0; // ft^4/s^2/slug
+    parameter.velocity.rho_0 = i.density_ratio
         * (p.half_s_over_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
             * i.velocity_2
             + R::HALF * u.phi * s.slope_of_g_velocity_in_dynamic_pressure * i.velocity_2)
@@ -376,22 +202,22 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
                 * i.velocity_2
             + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3
                 * i.velocity_2); // rad*ft^3/s/slug
-    let d_f_gamma_d_rho_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        * p.half_s_over_m * x.velocity * i.density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
-    let d_gamma_rate_printed_d_rho_0 = p.s_over_m * i.density_ratio
+    let d_f_gamma_d_rho_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * p.half_s_over_m
+        * x.velocity * i.density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
+    parameter.gamma.rho_0 = p.s_over_m * i.density_ratio
         * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * x.velocity
             + R::HALF * x.alpha
                 * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
                 * x.velocity) + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
-    let d_f_velocity_eta_d_h_0 = s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_0
+    let d_f_velocity_eta_d_h_0 =
+        s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_0
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_0
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * q.d_generalized_force_2_d_h_0
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * q.d_generalized_force_3_d_h_0; // 1/s^2
-    let d_f_velocity_d_h_0 = s.slope_of_f_velocity_in_dynamic_pressure
-        * q.d_dynamic_pressure_d_h_0 + d_f_velocity_eta_d_h_0; // 1/s^2
-    let d_g_velocity_d_h_0 = s.slope_of_g_velocity_in_dynamic_pressure
-        * q.d_dynamic_pressure_d_h_0; // 1/s^2
-    let d_velocity_rate_printed_d_h_0 =
+    let d_f_velocity_d_h_0 = s.slope_of_f_velocity_in_dynamic_pressure * q.d_dynamic_pressure_d_h_0
+        + d_f_velocity_eta_d_h_0; // 1/s^2
+    let d_g_velocity_d_h_0 = s.slope_of_g_velocity_in_dynamic_pressure * q.d_dynamic_pressure_d_h_0; // 1/s^2
+    parameter.velocity.h_0 =
         q.d_reference_force_d_h_0 * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_0
         + u.phi * d_g_velocity_d_h_0; // 1/s^2
@@ -402,21 +228,20 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
     let d_f_gamma_d_h_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * q.d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
-    let d_g_gamma_d_h_0 = i
-        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+    let d_g_gamma_d_h_0 = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * q.d_turn_factor_d_h_0; // 1/s/ft
-    let d_gamma_rate_printed_d_h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_0
+    parameter.gamma.h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_0
         + d_f_gamma_d_h_0
         + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
-    let d_f_velocity_eta_d_h_s = s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_s
+    let d_f_velocity_eta_d_h_s =
+        s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_s
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_s
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * q.d_generalized_force_2_d_h_s
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * q.d_generalized_force_3_d_h_s; // 1/s^2
-    let d_f_velocity_d_h_s = s.slope_of_f_velocity_in_dynamic_pressure
-        * q.d_dynamic_pressure_d_h_s + d_f_velocity_eta_d_h_s; // 1/s^2
-    let d_g_velocity_d_h_s = s.slope_of_g_velocity_in_dynamic_pressure
-        * q.d_dynamic_pressure_d_h_s; // 1/s^2
-    let d_velocity_rate_printed_d_h_s =
+    let d_f_velocity_d_h_s = s.slope_of_f_velocity_in_dynamic_pressure * q.d_dynamic_pressure_d_h_s
+        + d_f_velocity_eta_d_h_s; // 1/s^2
+    let d_g_velocity_d_h_s = s.slope_of_g_velocity_in_dynamic_pressure * q.d_dynamic_pressure_d_h_s; // 1/s^2
+    parameter.velocity.h_s =
         q.d_reference_force_d_h_s * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_s
         + u.phi * d_g_velocity_d_h_s; // 1/s^2
@@ -427,38 +252,25 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
     let d_f_gamma_d_h_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * q.d_turn_factor_d_h_s + d_f_gamma_eta_d_h_s; // rad/s/ft
-    let d_g_gamma_d_h_s = i
-        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+    let d_g_gamma_d_h_s = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * q.d_turn_factor_d_h_s; // 1/s/ft
-    let d_gamma_rate_printed_d_h_s = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_s
+    parameter.gamma.h_s = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_s
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
-    let d_f_gamma_d_r_e = -i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
+    parameter.gamma.r_e = -i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
 
-    parameter.velocity_by_rho_0 = d_velocity_rate_printed_d_rho_0;
-    parameter.velocity_by_h_0 = d_velocity_rate_printed_d_h_0;
-    parameter.velocity_by_h_s = d_velocity_rate_printed_d_h_s;
-    parameter.velocity_by_g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity_by_r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_rho_0 = d_gamma_rate_printed_d_rho_0;
-    parameter.gamma_by_h_0 = d_gamma_rate_printed_d_h_0;
-    parameter.gamma_by_h_s = d_gamma_rate_printed_d_h_s;
-    parameter.gamma_by_g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.gamma_by_r_e = d_f_gamma_d_r_e;
+    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by environment in row alpha, environment in row
 /// pitch_rate.
 #[inline(always)]
 fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
     let d_f_alpha_eta_d_rho_0 = p.s * i.density_ratio
@@ -469,10 +281,10 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
                 * i.velocity_2
             + R::HALF * s.slope_of_f_alpha_eta_in_generalized_force_3 * i.c_n_3
                 * i.velocity_2); // rad*ft^3/s/slug
-    let d_f_alpha_d_rho_0 = s.slope_of_f_alpha_in_turn_factor * p.half_s_over_m
-        * x.velocity * i.density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
-    let d_alpha_rate_printed_d_rho_0 = s.slope_of_alpha_rate_printed_in_turn_factor
-        * p.half_s_over_m * x.velocity * i.density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
+    let d_f_alpha_d_rho_0 = s.slope_of_f_alpha_in_turn_factor * p.half_s_over_m * x.velocity
+        * i.density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
+    parameter.alpha.rho_0 = s.slope_of_alpha_rate_printed_in_turn_factor * p.half_s_over_m
+        * x.velocity * i.density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
     let d_f_pitch_rate_eta_d_rho_0 = p.s * i.density_ratio
         * (p.half_over_i_yy
             * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
@@ -485,7 +297,7 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
                 * i.velocity_2); // rad*ft^3/s^2/slug
     let d_f_pitch_rate_d_rho_0 = R::HALF * s.slope_of_f_pitch_rate_in_dynamic_pressure
         * i.velocity_2 * i.density_ratio + d_f_pitch_rate_eta_d_rho_0; // rad*ft^3/s^2/slug
-    let d_pitch_rate_rate_printed_d_rho_0 = i.density_ratio
+    parameter.pitch_rate.rho_0 = i.density_ratio
         * (p.half_s_over_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
             * i.velocity_2
             + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure
@@ -496,21 +308,18 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
     let d_f_alpha_d_h_0 = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_0
         + d_f_alpha_eta_d_h_0; // rad/s/ft
-    let d_alpha_rate_printed_d_h_0 = s.slope_of_alpha_rate_printed_in_turn_factor
-        * q.d_turn_factor_d_h_0 + d_f_alpha_d_h_0; // rad/s/ft
+    parameter.alpha.h_0 = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_0
+        + d_f_alpha_d_h_0; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_0 = q.d_reference_force_d_h_0 * p.inv_i_yy
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * q.d_generalized_force_1_d_h_0
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * q.d_generalized_force_2_d_h_0
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * q.d_generalized_force_3_d_h_0; // rad/s^2/ft
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_0
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * q.d_generalized_force_2_d_h_0
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * q.d_generalized_force_3_d_h_0; // rad/s^2/ft
     let d_f_pitch_rate_d_h_0 = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * q.d_dynamic_pressure_d_h_0 + d_f_pitch_rate_eta_d_h_0; // rad/s^2/ft
     let d_g_pitch_rate_d_h_0 = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * q.d_dynamic_pressure_d_h_0; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_h_0 =
+    parameter.pitch_rate.h_0 =
         q.d_reference_force_d_h_0 * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
@@ -520,144 +329,99 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
     let d_f_alpha_d_h_s = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_s
         + d_f_alpha_eta_d_h_s; // rad/s/ft
-    let d_alpha_rate_printed_d_h_s = s.slope_of_alpha_rate_printed_in_turn_factor
-        * q.d_turn_factor_d_h_s + d_f_alpha_d_h_s; // rad/s/ft
+    parameter.alpha.h_s = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_s
+        + d_f_alpha_d_h_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_s = q.d_reference_force_d_h_s * p.inv_i_yy
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
-        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
-            * q.d_generalized_force_1_d_h_s
-        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
-            * q.d_generalized_force_2_d_h_s
-        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
-            * q.d_generalized_force_3_d_h_s; // rad/s^2/ft
+        + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_s
+        + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * q.d_generalized_force_2_d_h_s
+        + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * q.d_generalized_force_3_d_h_s; // rad/s^2/ft
     let d_f_pitch_rate_d_h_s = s.slope_of_f_pitch_rate_in_dynamic_pressure
         * q.d_dynamic_pressure_d_h_s + d_f_pitch_rate_eta_d_h_s; // rad/s^2/ft
     let d_g_pitch_rate_d_h_s = p.slope_of_g_pitch_rate_in_dynamic_pressure
         * q.d_dynamic_pressure_d_h_s; // 1/s^2/ft
-    let d_pitch_rate_rate_printed_d_h_s =
+    parameter.pitch_rate.h_s =
         q.d_reference_force_d_h_s * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
-    let d_f_alpha_d_r_e = i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
+    parameter.alpha.r_e = i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
 
-    parameter.alpha_by_rho_0 = d_alpha_rate_printed_d_rho_0;
-    parameter.alpha_by_h_0 = d_alpha_rate_printed_d_h_0;
-    parameter.alpha_by_h_s = d_alpha_rate_printed_d_h_s;
-    parameter.alpha_by_g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha_by_r_e = d_f_alpha_d_r_e;
-    parameter.pitch_rate_by_rho_0 = d_pitch_rate_rate_printed_d_rho_0;
-    parameter.pitch_rate_by_h_0 = d_pitch_rate_rate_printed_d_h_0;
-    parameter.pitch_rate_by_h_s = d_pitch_rate_rate_printed_d_h_s;
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by modes.
 #[inline(always)]
 fn parameter_jacobian_by_modes<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_omega_1 = s.d_velocity_rate_printed_d_chi_1
+    parameter.velocity.omega_1 = s.d_velocity_rate_printed_d_chi_1
         * i.generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1; // ft/s/rad
-    let d_f_gamma_eta_d_omega_1 = s.d_gamma_rate_printed_d_chi_1
-        * i.generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1;
-    let d_f_alpha_eta_d_omega_1 = s.d_gamma_rate_printed_d_chi_1
-        * i.generalized_force_1_inv_omega_1_2 * p.two_over_omega_1;
-    let d_f_pitch_rate_eta_d_omega_1 = s.d_pitch_rate_rate_printed_d_chi_1
-        * p.minus_two_over_omega_1 * i.generalized_force_1_inv_omega_1_2; // 1/s
-    let d_chi_rate_1_d_omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
-    let d_f_velocity_eta_d_omega_2 = s.d_velocity_rate_printed_d_chi_2
+    parameter.gamma.omega_1 = s.d_gamma_rate_printed_d_chi_1 * i.generalized_force_1_inv_omega_1_2
+        * p.minus_two_over_omega_1;
+    parameter.alpha.omega_1 = s.d_gamma_rate_printed_d_chi_1 * i.generalized_force_1_inv_omega_1_2 * p.two_over_omega_1;
+    parameter.pitch_rate.omega_1 = s.d_pitch_rate_rate_printed_d_chi_1 * p.minus_two_over_omega_1
+        * i.generalized_force_1_inv_omega_1_2; // 1/s
+    parameter.chi_1.omega_1 = -x.chi_1 * p.d_chi_decay_1_d_omega_1; // ft^0.5*slug^0.5/rad
+    parameter.velocity.omega_2 = s.d_velocity_rate_printed_d_chi_2
         * i.generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2; // ft/s/rad
-    let d_f_gamma_eta_d_omega_2 = s.d_gamma_rate_printed_d_chi_2
-        * i.generalized_force_2_inv_omega_2_2 * p.minus_two_over_omega_2;
-    let d_f_alpha_eta_d_omega_2 = s.d_gamma_rate_printed_d_chi_2
-        * i.generalized_force_2_inv_omega_2_2 * p.two_over_omega_2;
-    let d_f_pitch_rate_eta_d_omega_2 = s.d_pitch_rate_rate_printed_d_chi_2
-        * p.minus_two_over_omega_2 * i.generalized_force_2_inv_omega_2_2; // 1/s
-    let d_chi_rate_2_d_omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
-    let d_f_velocity_eta_d_omega_3 = s.d_velocity_rate_printed_d_chi_3
+    parameter.gamma.omega_2 = s.d_gamma_rate_printed_d_chi_2 * i.generalized_force_2_inv_omega_2_2
+        * p.minus_two_over_omega_2;
+    parameter.alpha.omega_2 = s.d_gamma_rate_printed_d_chi_2 * i.generalized_force_2_inv_omega_2_2 * p.two_over_omega_2;
+    parameter.pitch_rate.omega_2 = s.d_pitch_rate_rate_printed_d_chi_2 * p.minus_two_over_omega_2
+        * i.generalized_force_2_inv_omega_2_2; // 1/s
+    parameter.chi_2.omega_2 = -x.chi_2 * p.d_chi_decay_2_d_omega_2; // ft^0.5*slug^0.5/rad
+    parameter.velocity.omega_3 = s.d_velocity_rate_printed_d_chi_3
         * i.generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3; // ft/s/rad
-    let d_f_gamma_eta_d_omega_3 = s.d_gamma_rate_printed_d_chi_3
-        * i.generalized_force_3_inv_omega_3_2 * p.minus_two_over_omega_3;
-    let d_f_alpha_eta_d_omega_3 = s.d_gamma_rate_printed_d_chi_3
-        * i.generalized_force_3_inv_omega_3_2 * p.two_over_omega_3;
-    let d_f_pitch_rate_eta_d_omega_3 = s.d_pitch_rate_rate_printed_d_chi_3
-        * p.minus_two_over_omega_3 * i.generalized_force_3_inv_omega_3_2; // 1/s
-    let d_chi_rate_3_d_omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
-    let d_chi_rate_1_d_zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
-    let d_chi_rate_2_d_zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
-    let d_chi_rate_3_d_zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
-
-    parameter.velocity_by_omega_1 = d_f_velocity_eta_d_omega_1;
-    parameter.velocity_by_omega_2 = d_f_velocity_eta_d_omega_2;
-    parameter.velocity_by_omega_3 = d_f_velocity_eta_d_omega_3;
-    parameter.gamma_by_omega_1 = d_f_gamma_eta_d_omega_1;
-    parameter.gamma_by_omega_2 = d_f_gamma_eta_d_omega_2;
-    parameter.gamma_by_omega_3 = d_f_gamma_eta_d_omega_3;
-    parameter.alpha_by_omega_1 = d_f_alpha_eta_d_omega_1;
-    parameter.alpha_by_omega_2 = d_f_alpha_eta_d_omega_2;
-    parameter.alpha_by_omega_3 = d_f_alpha_eta_d_omega_3;
-    parameter.pitch_rate_by_omega_1 = d_f_pitch_rate_eta_d_omega_1;
-    parameter.pitch_rate_by_omega_2 = d_f_pitch_rate_eta_d_omega_2;
-    parameter.pitch_rate_by_omega_3 = d_f_pitch_rate_eta_d_omega_3;
-    parameter.chi_1_by_omega_1 = d_chi_rate_1_d_omega_1;
-    parameter.chi_1_by_zeta_1 = d_chi_rate_1_d_zeta_1;
-    parameter.chi_2_by_omega_2 = d_chi_rate_2_d_omega_2;
-    parameter.chi_2_by_zeta_2 = d_chi_rate_2_d_zeta_2;
-    parameter.chi_3_by_omega_3 = d_chi_rate_3_d_omega_3;
-    parameter.chi_3_by_zeta_3 = d_chi_rate_3_d_zeta_3;
+    parameter.gamma.omega_3 = s.d_gamma_rate_printed_d_chi_3 * i.generalized_force_3_inv_omega_3_2
+        * p.minus_two_over_omega_3;
+    parameter.alpha.omega_3 = s.d_gamma_rate_printed_d_chi_3 * i.generalized_force_3_inv_omega_3_2 * p.two_over_omega_3;
+    parameter.pitch_rate.omega_3 = s.d_pitch_rate_rate_printed_d_chi_3 * p.minus_two_over_omega_3
+        * i.generalized_force_3_inv_omega_3_2; // 1/s
+    parameter.chi_3.omega_3 = -x.chi_3 * p.d_chi_decay_3_d_omega_3; // ft^0.5*slug^0.5/rad
+    parameter.chi_1.zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
+    parameter.chi_2.zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
+    parameter.chi_3.zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by choices.
 #[inline(always)]
 fn parameter_jacobian_by_choices<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_canard_command = i.reference_force
+    parameter.velocity.canard_command = i.reference_force
         * (s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
             + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
                 * u.delta_c
             + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
                 * u.delta_c); // ft/s^2
-    let d_f_gamma_eta_d_canard_command = i.reference_force
+    parameter.gamma.canard_command = i.reference_force
         * (s.slope_of_f_gamma_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
             + s.slope_of_f_gamma_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
             + s.slope_of_f_gamma_eta_in_generalized_force_3 * p.c_n_3_delta_c
                 * u.delta_c); // rad/s
-    let d_f_alpha_eta_d_canard_command = i.reference_force
+    parameter.alpha.canard_command = i.reference_force
         * (s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_c
             + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_c
             + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c
                 * u.delta_c); // rad/s
-    let d_f_pitch_rate_eta_d_canard_command = i.reference_force
+    parameter.pitch_rate.canard_command = i.reference_force
         * (s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c
             * u.delta_c
             + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
                 * u.delta_c
             + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
                 * u.delta_c); // rad/s^2
-    let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
-        * i.reference_force
-        * q
-            .sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft/s^2
-    let d_f_velocity_d_canard_slaving = i.reference_force
+    let d_f_velocity_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c * i.reference_force
+        * q.sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft/s^2
+    parameter.velocity.canard_slaving = i.reference_force
         * p.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_canard_slaving; // ft/s^2
-    let d_f_gamma_eta_d_canard_slaving = -i.reference_force
-        * p.c_l_delta_e_over_c_l_delta_c
+    parameter.gamma.canard_slaving = -i.reference_force * p.c_l_delta_e_over_c_l_delta_c
         * q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad/s
-    let d_f_alpha_eta_d_canard_slaving = -i.reference_force
-        * p.c_l_delta_e_over_c_l_delta_c
+    parameter.alpha.canard_slaving = -i.reference_force * p.c_l_delta_e_over_c_l_delta_c
         * q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad/s
     let d_f_pitch_rate_eta_d_canard_slaving = -p.c_l_delta_e_over_c_l_delta_c
         * i.reference_force
@@ -667,393 +431,257 @@ fn parameter_jacobian_by_choices<R: Real>(
                 * u.delta_e
             + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c
                 * u.delta_e); // rad/s^2
-    let d_pitch_rate_rate_printed_d_canard_slaving = d_f_pitch_rate_eta_d_canard_slaving
-        - u.delta_e * i.reference_force
-            * p.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c; // rad/s^2
+    parameter.pitch_rate.canard_slaving = d_f_pitch_rate_eta_d_canard_slaving
+        - u.delta_e * i.reference_force * p.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c; // rad/s^2
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
             * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
                 - x.velocity)
             - x.velocity * p.earth_curvature
                 * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
-    let d_f_gamma_d_spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_f_alpha_d_spherical_earth = i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-    let d_chi_rate_1_d_moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
-    let d_chi_rate_2_d_moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
-    let d_chi_rate_3_d_moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
+    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    parameter.alpha.spherical_earth = i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
+    parameter.chi_1.moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
+    parameter.chi_2.moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
+    parameter.chi_3.moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
 
-    parameter.velocity_by_canard_command = d_f_velocity_eta_d_canard_command;
-    parameter.velocity_by_canard_slaving = d_f_velocity_d_canard_slaving;
-    parameter.velocity_by_spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e
-        * i.radius_ratio * q.slope_of_radius_ratio_in_earth_curvature;
-    parameter.gamma_by_canard_command = d_f_gamma_eta_d_canard_command;
-    parameter.gamma_by_canard_slaving = d_f_gamma_eta_d_canard_slaving;
-    parameter.gamma_by_spherical_earth = d_f_gamma_d_spherical_earth;
-    parameter.alpha_by_canard_command = d_f_alpha_eta_d_canard_command;
-    parameter.alpha_by_canard_slaving = d_f_alpha_eta_d_canard_slaving;
-    parameter.alpha_by_spherical_earth = d_f_alpha_d_spherical_earth;
-    parameter.pitch_rate_by_canard_command = d_f_pitch_rate_eta_d_canard_command;
-    parameter.pitch_rate_by_canard_slaving = d_pitch_rate_rate_printed_d_canard_slaving;
-    parameter.chi_1_by_moment_matching = d_chi_rate_1_d_moment_matching;
-    parameter.chi_2_by_moment_matching = d_chi_rate_2_d_moment_matching;
-    parameter.chi_3_by_moment_matching = d_chi_rate_3_d_moment_matching;
+    parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_t.
 #[inline(always)]
 fn parameter_jacobian_by_c_t<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_velocity_rate_printed_d_c_t_eta_1 = i.reference_force * p.inv_m * i.cos_alpha
+    parameter.velocity.c_t_eta_1 = i.reference_force * p.inv_m * i.cos_alpha
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_1 = i.turn_factor * i.sin_alpha
+    parameter.gamma.c_t_eta_1 = i.turn_factor * i.sin_alpha
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
-    let d_alpha_rate_printed_d_c_t_eta_1 = -d_gamma_rate_printed_d_c_t_eta_1; // rad*ft^0.5*slug^0.5/s
-    let d_pitch_rate_rate_printed_d_c_t_eta_1 = i.reference_force * p.z_t_over_i_yy
+    parameter.alpha.c_t_eta_1 = -parameter.gamma.c_t_eta_1; // rad*ft^0.5*slug^0.5/s
+    parameter.pitch_rate.c_t_eta_1 = i.reference_force * p.z_t_over_i_yy
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_t_eta_2 = i.reference_force * p.inv_m * i.cos_alpha
+    parameter.velocity.c_t_eta_2 = i.reference_force * p.inv_m * i.cos_alpha
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_2 = i.turn_factor * i.sin_alpha
+    parameter.gamma.c_t_eta_2 = i.turn_factor * i.sin_alpha
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
-    let d_alpha_rate_printed_d_c_t_eta_2 = -d_gamma_rate_printed_d_c_t_eta_2; // rad*ft^0.5*slug^0.5/s
-    let d_pitch_rate_rate_printed_d_c_t_eta_2 = i.reference_force * p.z_t_over_i_yy
+    parameter.alpha.c_t_eta_2 = -parameter.gamma.c_t_eta_2; // rad*ft^0.5*slug^0.5/s
+    parameter.pitch_rate.c_t_eta_2 = i.reference_force * p.z_t_over_i_yy
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_t_eta_3 = i.reference_force * p.inv_m * i.cos_alpha
+    parameter.velocity.c_t_eta_3 = i.reference_force * p.inv_m * i.cos_alpha
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
-    let d_gamma_rate_printed_d_c_t_eta_3 = i.turn_factor * i.sin_alpha
+    parameter.gamma.c_t_eta_3 = i.turn_factor * i.sin_alpha
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
-    let d_alpha_rate_printed_d_c_t_eta_3 = -d_gamma_rate_printed_d_c_t_eta_3; // rad*ft^0.5*slug^0.5/s
-    let d_pitch_rate_rate_printed_d_c_t_eta_3 = i.reference_force * p.z_t_over_i_yy
+    parameter.alpha.c_t_eta_3 = -parameter.gamma.c_t_eta_3; // rad*ft^0.5*slug^0.5/s
+    parameter.pitch_rate.c_t_eta_3 = i.reference_force * p.z_t_over_i_yy
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
 
-    parameter.velocity_by_c_t_phi_alpha = u.phi * i.reference_force * p.inv_m
-        * i.cos_alpha * x.alpha;
-    parameter.velocity_by_c_t_phi = u.phi * i.reference_force * p.inv_m * i.cos_alpha;
-    parameter.velocity_by_c_t_alpha = i.reference_force * p.inv_m * i.cos_alpha
-        * x.alpha;
-    parameter.velocity_by_c_t_0 = i.reference_force * p.inv_m * i.cos_alpha;
-    parameter.velocity_by_c_t_eta_1 = d_velocity_rate_printed_d_c_t_eta_1;
-    parameter.velocity_by_c_t_eta_2 = d_velocity_rate_printed_d_c_t_eta_2;
-    parameter.velocity_by_c_t_eta_3 = d_velocity_rate_printed_d_c_t_eta_3;
-    parameter.gamma_by_c_t_phi_alpha = x.alpha * i.turn_factor * i.sin_alpha * u.phi;
-    parameter.gamma_by_c_t_phi = i.turn_factor * i.sin_alpha * u.phi;
-    parameter.gamma_by_c_t_alpha = x.alpha * i.turn_factor * i.sin_alpha;
-    parameter.gamma_by_c_t_0 = i.turn_factor * i.sin_alpha;
-    parameter.gamma_by_c_t_eta_1 = d_gamma_rate_printed_d_c_t_eta_1;
-    parameter.gamma_by_c_t_eta_2 = d_gamma_rate_printed_d_c_t_eta_2;
-    parameter.gamma_by_c_t_eta_3 = d_gamma_rate_printed_d_c_t_eta_3;
-    parameter.alpha_by_c_t_phi_alpha = -x.alpha * i.turn_factor * i.sin_alpha * u.phi;
-    parameter.alpha_by_c_t_phi = -i.turn_factor * i.sin_alpha * u.phi;
-    parameter.alpha_by_c_t_alpha = -x.alpha * i.turn_factor * i.sin_alpha;
-    parameter.alpha_by_c_t_0 = -i.turn_factor * i.sin_alpha;
-    parameter.alpha_by_c_t_eta_1 = d_alpha_rate_printed_d_c_t_eta_1;
-    parameter.alpha_by_c_t_eta_2 = d_alpha_rate_printed_d_c_t_eta_2;
-    parameter.alpha_by_c_t_eta_3 = d_alpha_rate_printed_d_c_t_eta_3;
-    parameter.pitch_rate_by_c_t_phi_alpha = i.reference_force * p.z_t_over_i_yy * x.alpha
-        * u.phi;
-    parameter.pitch_rate_by_c_t_phi = i.reference_force * p.z_t_over_i_yy * u.phi;
-    parameter.pitch_rate_by_c_t_alpha = i.reference_force * p.z_t_over_i_yy * x.alpha;
-    parameter.pitch_rate_by_c_t_0 = i.reference_force * p.z_t_over_i_yy;
-    parameter.pitch_rate_by_c_t_eta_1 = d_pitch_rate_rate_printed_d_c_t_eta_1;
-    parameter.pitch_rate_by_c_t_eta_2 = d_pitch_rate_rate_printed_d_c_t_eta_2;
-    parameter.pitch_rate_by_c_t_eta_3 = d_pitch_rate_rate_printed_d_c_t_eta_3;
+    parameter.velocity.c_t_phi_alpha = u.phi * i.reference_force * p.inv_m * i.cos_alpha * x.alpha;
+    parameter.velocity.c_t_phi = u.phi * i.reference_force * p.inv_m * i.cos_alpha;
+    parameter.velocity.c_t_alpha = i.reference_force * p.inv_m * i.cos_alpha * x.alpha;
+    parameter.velocity.c_t_0 = i.reference_force * p.inv_m * i.cos_alpha;
+    parameter.gamma.c_t_phi_alpha = x.alpha * i.turn_factor * i.sin_alpha * u.phi;
+    parameter.gamma.c_t_phi = i.turn_factor * i.sin_alpha * u.phi;
+    parameter.gamma.c_t_alpha = x.alpha * i.turn_factor * i.sin_alpha;
+    parameter.gamma.c_t_0 = i.turn_factor * i.sin_alpha;
+    parameter.alpha.c_t_phi_alpha = -x.alpha * i.turn_factor * i.sin_alpha * u.phi;
+    parameter.alpha.c_t_phi = -i.turn_factor * i.sin_alpha * u.phi;
+    parameter.alpha.c_t_alpha = -x.alpha * i.turn_factor * i.sin_alpha;
+    parameter.alpha.c_t_0 = -i.turn_factor * i.sin_alpha;
+    parameter.pitch_rate.c_t_phi_alpha = i.reference_force * p.z_t_over_i_yy * x.alpha * u.phi;
+    parameter.pitch_rate.c_t_phi = i.reference_force * p.z_t_over_i_yy * u.phi;
+    parameter.pitch_rate.c_t_alpha = i.reference_force * p.z_t_over_i_yy * x.alpha;
+    parameter.pitch_rate.c_t_0 = i.reference_force * p.z_t_over_i_yy;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
 #[inline(always)]
 fn parameter_jacobian_by_c_l_c_d<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * i.reference_force
-        * q
-            .sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
-    let d_f_velocity_d_c_l_delta_e = i.reference_force
+    let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
+        * q.sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
+    parameter.velocity.c_l_delta_e = i.reference_force
         * p.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c * u.delta_e
         + d_f_velocity_eta_d_c_l_delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_e = -i.reference_force
-        * p.canard_slaving_over_c_l_delta_c
+    parameter.gamma.c_l_delta_e = -i.reference_force * p.canard_slaving_over_c_l_delta_c
         * q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_e = -i.reference_force
-        * p.canard_slaving_over_c_l_delta_c
+    parameter.alpha.c_l_delta_e = -i.reference_force * p.canard_slaving_over_c_l_delta_c
         * q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_e_term_1 =
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_e
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c * u.delta_e
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2_c_n_3_delta_c * u.delta_e;
-    let d_f_pitch_rate_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c
-        * i.reference_force * d_f_pitch_rate_eta_d_c_l_delta_e_term_1; // rad^2/s^2
-    let d_pitch_rate_rate_printed_d_c_l_delta_e = d_f_pitch_rate_eta_d_c_l_delta_e
-        - u.delta_e * i.reference_force
-            * p.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c; // rad^2/s^2
+    let d_f_pitch_rate_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
+        * d_f_pitch_rate_eta_d_c_l_delta_e_term_1; // rad^2/s^2
+    parameter.pitch_rate.c_l_delta_e = d_f_pitch_rate_eta_d_c_l_delta_e
+        - u.delta_e * i.reference_force * p.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c; // rad^2/s^2
     let d_f_velocity_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * i.reference_force
-        * q
-            .sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
-    let d_f_velocity_d_c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
+        * q.sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
+    parameter.velocity.c_l_delta_c = d_f_velocity_eta_d_c_l_delta_c
         - i.reference_force * p.d_f_velocity_d_c_l_delta_c_constant_1 * u.delta_e; // ft*rad/s^2
-    let d_f_gamma_eta_d_c_l_delta_c = i.reference_force
-        * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+    parameter.gamma.c_l_delta_c = i.reference_force * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * q.sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
-    let d_f_alpha_eta_d_c_l_delta_c = i.reference_force
-        * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
+    parameter.alpha.c_l_delta_c = i.reference_force * p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * q.sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e; // rad^2/s
     let d_f_pitch_rate_eta_d_c_l_delta_c = p.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * i.reference_force * d_f_pitch_rate_eta_d_c_l_delta_e_term_1; // rad^2/s^2
-    let d_pitch_rate_rate_printed_d_c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c
-        + u.delta_e * i.reference_force
-            * p.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy; // rad^2/s^2
-    let d_gamma_rate_printed_d_c_l_eta_1 = i.turn_factor
-        * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
-    let d_alpha_rate_printed_d_c_l_eta_1 = -d_gamma_rate_printed_d_c_l_eta_1; // rad*ft^0.5*slug^0.5/s
-    let d_gamma_rate_printed_d_c_l_eta_2 = i.turn_factor
-        * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
-    let d_alpha_rate_printed_d_c_l_eta_2 = -d_gamma_rate_printed_d_c_l_eta_2; // rad*ft^0.5*slug^0.5/s
-    let d_gamma_rate_printed_d_c_l_eta_3 = i.turn_factor
-        * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
-    let d_alpha_rate_printed_d_c_l_eta_3 = -d_gamma_rate_printed_d_c_l_eta_3; // rad*ft^0.5*slug^0.5/s
-    let d_velocity_rate_printed_d_c_d_eta_1 = -i.reference_force * p.inv_m
+    parameter.pitch_rate.c_l_delta_c = d_f_pitch_rate_eta_d_c_l_delta_c + u.delta_e
+        * i.reference_force
+        * p.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy; // rad^2/s^2
+    parameter.gamma.c_l_eta_1 = i.turn_factor * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s
+    parameter.alpha.c_l_eta_1 = -parameter.gamma.c_l_eta_1; // rad*ft^0.5*slug^0.5/s
+    parameter.gamma.c_l_eta_2 = i.turn_factor * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s
+    parameter.alpha.c_l_eta_2 = -parameter.gamma.c_l_eta_2; // rad*ft^0.5*slug^0.5/s
+    parameter.gamma.c_l_eta_3 = i.turn_factor * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
+    parameter.alpha.c_l_eta_3 = -parameter.gamma.c_l_eta_3; // rad*ft^0.5*slug^0.5/s
+    parameter.velocity.c_d_eta_1 = -i.reference_force * p.inv_m
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_d_eta_2 = -i.reference_force * p.inv_m
+    parameter.velocity.c_d_eta_2 = -i.reference_force * p.inv_m
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
-    let d_velocity_rate_printed_d_c_d_eta_3 = -i.reference_force * p.inv_m
+    parameter.velocity.c_d_eta_3 = -i.reference_force * p.inv_m
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
 
-    parameter.velocity_by_c_l_delta_e = d_f_velocity_d_c_l_delta_e;
-    parameter.velocity_by_c_l_delta_c = d_f_velocity_d_c_l_delta_c;
-    parameter.gamma_by_c_l_alpha = x.alpha * i.turn_factor;
-    parameter.gamma_by_c_l_delta_e = d_f_gamma_eta_d_c_l_delta_e;
-    parameter.gamma_by_c_l_delta_c = d_f_gamma_eta_d_c_l_delta_c;
-    parameter.gamma_by_c_l_0 = i.turn_factor;
-    parameter.gamma_by_c_l_eta_1 = d_gamma_rate_printed_d_c_l_eta_1;
-    parameter.gamma_by_c_l_eta_2 = d_gamma_rate_printed_d_c_l_eta_2;
-    parameter.gamma_by_c_l_eta_3 = d_gamma_rate_printed_d_c_l_eta_3;
-    parameter.alpha_by_c_l_alpha = -x.alpha * i.turn_factor;
-    parameter.alpha_by_c_l_delta_e = d_f_alpha_eta_d_c_l_delta_e;
-    parameter.alpha_by_c_l_delta_c = d_f_alpha_eta_d_c_l_delta_c;
-    parameter.alpha_by_c_l_0 = -i.turn_factor;
-    parameter.alpha_by_c_l_eta_1 = d_alpha_rate_printed_d_c_l_eta_1;
-    parameter.alpha_by_c_l_eta_2 = d_alpha_rate_printed_d_c_l_eta_2;
-    parameter.alpha_by_c_l_eta_3 = d_alpha_rate_printed_d_c_l_eta_3;
-    parameter.pitch_rate_by_c_l_delta_e = d_pitch_rate_rate_printed_d_c_l_delta_e;
-    parameter.pitch_rate_by_c_l_delta_c = d_pitch_rate_rate_printed_d_c_l_delta_c;
-    parameter.velocity_by_c_d_alpha = -i.reference_force * p.inv_m * x.alpha;
-    parameter.velocity_by_c_d_delta_e = -i.reference_force * p.inv_m * u.delta_e;
-    parameter.velocity_by_c_d_delta_c = -i.reference_force * p.canard_gain_over_m
-        * u.delta_e;
-    parameter.velocity_by_c_d_0 = -i.reference_force * p.inv_m;
-    parameter.velocity_by_c_d_eta_1 = d_velocity_rate_printed_d_c_d_eta_1;
-    parameter.velocity_by_c_d_eta_2 = d_velocity_rate_printed_d_c_d_eta_2;
-    parameter.velocity_by_c_d_eta_3 = d_velocity_rate_printed_d_c_d_eta_3;
+    parameter.gamma.c_l_alpha = x.alpha * i.turn_factor;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.alpha.c_l_alpha = -x.alpha * i.turn_factor;
+    parameter.alpha.c_l_0 = -i.turn_factor;
+    parameter.velocity.c_d_alpha = -i.reference_force * p.inv_m * x.alpha;
+    parameter.velocity.c_d_delta_e = -i.reference_force * p.inv_m * u.delta_e;
+    parameter.velocity.c_d_delta_c = -i.reference_force * p.canard_gain_over_m * u.delta_e;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1, c_n_2.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_f_velocity_eta_d_c_n_1_alpha_2 = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_alpha = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_alpha = s.d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_delta_e = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_delta_e = s.d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_delta_c = s.d_velocity_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_delta_c = s.d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_1_0 = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+    parameter.velocity.c_n_1_alpha_2 = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    parameter.pitch_rate.c_n_1_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_1_alpha = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_1_alpha = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_1_delta_e = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_1_delta_e = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_1_delta_c = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_1_delta_c = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_1_0 = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
         * i.reference_force; // (ft*slug)^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_1_0 = s.d_pitch_rate_rate_printed_d_chi_1
-        * p.inv_omega_1_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_alpha_2 = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_alpha = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_alpha = s.d_pitch_rate_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_delta_e = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_delta_e = s.d_pitch_rate_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_delta_c = s.d_velocity_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_delta_c = s.d_pitch_rate_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_2_0 = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+    parameter.pitch_rate.c_n_1_0 = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
+        * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_2_alpha_2 = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    parameter.pitch_rate.c_n_2_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_2_alpha = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_2_alpha = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_2_delta_e = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_2_delta_e = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_2_delta_c = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_2_delta_c = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_2_0 = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
         * i.reference_force; // (ft*slug)^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_2_0 = s.d_pitch_rate_rate_printed_d_chi_2
-        * p.inv_omega_2_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
+    parameter.pitch_rate.c_n_2_0 = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
+        * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
 
-    parameter.velocity_by_c_n_1_alpha_2 = d_f_velocity_eta_d_c_n_1_alpha_2;
-    parameter.velocity_by_c_n_1_alpha = d_f_velocity_eta_d_c_n_1_alpha;
-    parameter.velocity_by_c_n_1_delta_e = d_f_velocity_eta_d_c_n_1_delta_e;
-    parameter.velocity_by_c_n_1_delta_c = d_f_velocity_eta_d_c_n_1_delta_c;
-    parameter.velocity_by_c_n_1_0 = d_f_velocity_eta_d_c_n_1_0;
-    parameter.gamma_by_c_n_1_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_1
-        * i.reference_force * i.alpha_2;
-    parameter.gamma_by_c_n_1_alpha = s.slope_of_f_gamma_eta_in_generalized_force_1
-        * i.reference_force * x.alpha;
-    parameter.gamma_by_c_n_1_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1
-        * i.reference_force * u.delta_e;
-    parameter.gamma_by_c_n_1_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1
-        * i.reference_force * i.canard_deflection;
-    parameter.gamma_by_c_n_1_0 = s.slope_of_f_gamma_eta_in_generalized_force_1
-        * i.reference_force;
-    parameter.alpha_by_c_n_1_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_1
-        * i.reference_force * i.alpha_2;
-    parameter.alpha_by_c_n_1_alpha = s.slope_of_f_alpha_eta_in_generalized_force_1
-        * i.reference_force * x.alpha;
-    parameter.alpha_by_c_n_1_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_1
-        * i.reference_force * u.delta_e;
-    parameter.alpha_by_c_n_1_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_1
-        * i.reference_force * i.canard_deflection;
-    parameter.alpha_by_c_n_1_0 = s.slope_of_f_alpha_eta_in_generalized_force_1
-        * i.reference_force;
-    parameter.pitch_rate_by_c_n_1_alpha_2 = d_f_pitch_rate_eta_d_c_n_1_alpha_2;
-    parameter.pitch_rate_by_c_n_1_alpha = d_f_pitch_rate_eta_d_c_n_1_alpha;
-    parameter.pitch_rate_by_c_n_1_delta_e = d_f_pitch_rate_eta_d_c_n_1_delta_e;
-    parameter.pitch_rate_by_c_n_1_delta_c = d_f_pitch_rate_eta_d_c_n_1_delta_c;
-    parameter.pitch_rate_by_c_n_1_0 = d_f_pitch_rate_eta_d_c_n_1_0;
-    parameter.velocity_by_c_n_2_alpha_2 = d_f_velocity_eta_d_c_n_2_alpha_2;
-    parameter.velocity_by_c_n_2_alpha = d_f_velocity_eta_d_c_n_2_alpha;
-    parameter.velocity_by_c_n_2_delta_e = d_f_velocity_eta_d_c_n_2_delta_e;
-    parameter.velocity_by_c_n_2_delta_c = d_f_velocity_eta_d_c_n_2_delta_c;
-    parameter.velocity_by_c_n_2_0 = d_f_velocity_eta_d_c_n_2_0;
-    parameter.gamma_by_c_n_2_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_2
-        * i.reference_force * i.alpha_2;
-    parameter.gamma_by_c_n_2_alpha = s.slope_of_f_gamma_eta_in_generalized_force_2
-        * i.reference_force * x.alpha;
-    parameter.gamma_by_c_n_2_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_2
-        * i.reference_force * u.delta_e;
-    parameter.gamma_by_c_n_2_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_2
-        * i.reference_force * i.canard_deflection;
-    parameter.gamma_by_c_n_2_0 = s.slope_of_f_gamma_eta_in_generalized_force_2
-        * i.reference_force;
-    parameter.alpha_by_c_n_2_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_2
-        * i.reference_force * i.alpha_2;
-    parameter.alpha_by_c_n_2_alpha = s.slope_of_f_alpha_eta_in_generalized_force_2
-        * i.reference_force * x.alpha;
-    parameter.alpha_by_c_n_2_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_2
-        * i.reference_force * u.delta_e;
-    parameter.alpha_by_c_n_2_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_2
-        * i.reference_force * i.canard_deflection;
-    parameter.alpha_by_c_n_2_0 = s.slope_of_f_alpha_eta_in_generalized_force_2
-        * i.reference_force;
-    parameter.pitch_rate_by_c_n_2_alpha_2 = d_f_pitch_rate_eta_d_c_n_2_alpha_2;
-    parameter.pitch_rate_by_c_n_2_alpha = d_f_pitch_rate_eta_d_c_n_2_alpha;
-    parameter.pitch_rate_by_c_n_2_delta_e = d_f_pitch_rate_eta_d_c_n_2_delta_e;
-    parameter.pitch_rate_by_c_n_2_delta_c = d_f_pitch_rate_eta_d_c_n_2_delta_c;
-    parameter.pitch_rate_by_c_n_2_0 = d_f_pitch_rate_eta_d_c_n_2_0;
+    parameter.gamma.c_n_1_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
+    parameter.gamma.c_n_1_alpha = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * x.alpha;
+    parameter.gamma.c_n_1_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
+    parameter.gamma.c_n_1_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force
+        * i.canard_deflection;
+    parameter.gamma.c_n_1_0 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force;
+    parameter.alpha.c_n_1_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
+    parameter.alpha.c_n_1_alpha = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * x.alpha;
+    parameter.alpha.c_n_1_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
+    parameter.alpha.c_n_1_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force
+        * i.canard_deflection;
+    parameter.alpha.c_n_1_0 = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force;
+    parameter.gamma.c_n_2_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * i.alpha_2;
+    parameter.gamma.c_n_2_alpha = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * x.alpha;
+    parameter.gamma.c_n_2_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * u.delta_e;
+    parameter.gamma.c_n_2_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force
+        * i.canard_deflection;
+    parameter.gamma.c_n_2_0 = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force;
+    parameter.alpha.c_n_2_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force * i.alpha_2;
+    parameter.alpha.c_n_2_alpha = s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force * x.alpha;
+    parameter.alpha.c_n_2_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force * u.delta_e;
+    parameter.alpha.c_n_2_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force
+        * i.canard_deflection;
+    parameter.alpha.c_n_2_0 = s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m.
 #[inline(always)]
 fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    q: &Sensitivities<R>,
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
     // Derivatives with respect to parameters
-    let d_pitch_rate_rate_printed_d_c_m_eta_1 = i.reference_force * p.c_bar_over_i_yy
+    parameter.pitch_rate.c_m_eta_1 = i.reference_force * p.c_bar_over_i_yy
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
-    let d_pitch_rate_rate_printed_d_c_m_eta_2 = i.reference_force * p.c_bar_over_i_yy
+    parameter.pitch_rate.c_m_eta_2 = i.reference_force * p.c_bar_over_i_yy
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
-    let d_pitch_rate_rate_printed_d_c_m_eta_3 = i.reference_force * p.c_bar_over_i_yy
+    parameter.pitch_rate.c_m_eta_3 = i.reference_force * p.c_bar_over_i_yy
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_velocity_eta_d_c_n_3_alpha_2 = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_alpha = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_alpha = s.d_pitch_rate_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_delta_e = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_delta_e = s.d_pitch_rate_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_delta_c = s.d_velocity_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_delta_c = s.d_pitch_rate_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
-    let d_f_velocity_eta_d_c_n_3_0 = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+    parameter.velocity.c_n_3_alpha_2 = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
+    parameter.pitch_rate.c_n_3_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * i.alpha_2; // rad^3*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_3_alpha = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * x.alpha; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_3_alpha = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * x.alpha; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_3_delta_e = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * u.delta_e; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_3_delta_e = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * u.delta_e; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_3_delta_c = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * i.canard_deflection; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_n_3_delta_c = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force * i.canard_deflection; // rad^2*slug^0.5/s^2/ft^0.5
+    parameter.velocity.c_n_3_0 = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
         * i.reference_force; // (ft*slug)^0.5/s^2
-    let d_f_pitch_rate_eta_d_c_n_3_0 = s.d_pitch_rate_rate_printed_d_chi_3
-        * p.inv_omega_3_2 * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
+    parameter.pitch_rate.c_n_3_0 = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
+        * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
 
-    parameter.velocity_by_c_n_3_alpha_2 = d_f_velocity_eta_d_c_n_3_alpha_2;
-    parameter.velocity_by_c_n_3_alpha = d_f_velocity_eta_d_c_n_3_alpha;
-    parameter.velocity_by_c_n_3_delta_e = d_f_velocity_eta_d_c_n_3_delta_e;
-    parameter.velocity_by_c_n_3_delta_c = d_f_velocity_eta_d_c_n_3_delta_c;
-    parameter.velocity_by_c_n_3_0 = d_f_velocity_eta_d_c_n_3_0;
-    parameter.gamma_by_c_n_3_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_3
-        * i.reference_force * i.alpha_2;
-    parameter.gamma_by_c_n_3_alpha = s.slope_of_f_gamma_eta_in_generalized_force_3
-        * i.reference_force * x.alpha;
-    parameter.gamma_by_c_n_3_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_3
-        * i.reference_force * u.delta_e;
-    parameter.gamma_by_c_n_3_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_3
-        * i.reference_force * i.canard_deflection;
-    parameter.gamma_by_c_n_3_0 = s.slope_of_f_gamma_eta_in_generalized_force_3
-        * i.reference_force;
-    parameter.alpha_by_c_n_3_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_3
-        * i.reference_force * i.alpha_2;
-    parameter.alpha_by_c_n_3_alpha = s.slope_of_f_alpha_eta_in_generalized_force_3
-        * i.reference_force * x.alpha;
-    parameter.alpha_by_c_n_3_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_3
-        * i.reference_force * u.delta_e;
-    parameter.alpha_by_c_n_3_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_3
-        * i.reference_force * i.canard_deflection;
-    parameter.alpha_by_c_n_3_0 = s.slope_of_f_alpha_eta_in_generalized_force_3
-        * i.reference_force;
-    parameter.pitch_rate_by_c_n_3_alpha_2 = d_f_pitch_rate_eta_d_c_n_3_alpha_2;
-    parameter.pitch_rate_by_c_n_3_alpha = d_f_pitch_rate_eta_d_c_n_3_alpha;
-    parameter.pitch_rate_by_c_n_3_delta_e = d_f_pitch_rate_eta_d_c_n_3_delta_e;
-    parameter.pitch_rate_by_c_n_3_delta_c = d_f_pitch_rate_eta_d_c_n_3_delta_c;
-    parameter.pitch_rate_by_c_n_3_0 = d_f_pitch_rate_eta_d_c_n_3_0;
-    parameter.pitch_rate_by_c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy
-        * i.alpha_2;
-    parameter.pitch_rate_by_c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
-    parameter.pitch_rate_by_c_m_delta_e = u.delta_e * i.reference_force
-        * p.c_bar_over_i_yy;
-    parameter.pitch_rate_by_c_m_delta_c = u.delta_e * i.reference_force
-        * p.c_bar_canard_gain_over_i_yy;
-    parameter.pitch_rate_by_c_m_0 = i.reference_force * p.c_bar_over_i_yy;
-    parameter.pitch_rate_by_c_m_eta_1 = d_pitch_rate_rate_printed_d_c_m_eta_1;
-    parameter.pitch_rate_by_c_m_eta_2 = d_pitch_rate_rate_printed_d_c_m_eta_2;
-    parameter.pitch_rate_by_c_m_eta_3 = d_pitch_rate_rate_printed_d_c_m_eta_3;
+    parameter.gamma.c_n_3_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * i.alpha_2;
+    parameter.gamma.c_n_3_alpha = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * x.alpha;
+    parameter.gamma.c_n_3_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * u.delta_e;
+    parameter.gamma.c_n_3_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force
+        * i.canard_deflection;
+    parameter.gamma.c_n_3_0 = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force;
+    parameter.alpha.c_n_3_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force * i.alpha_2;
+    parameter.alpha.c_n_3_alpha = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force * x.alpha;
+    parameter.alpha.c_n_3_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force * u.delta_e;
+    parameter.alpha.c_n_3_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force
+        * i.canard_deflection;
+    parameter.alpha.c_n_3_0 = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force;
+    parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
+    parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
+    parameter.pitch_rate.c_m_delta_e = u.delta_e * i.reference_force * p.c_bar_over_i_yy;
+    parameter.pitch_rate.c_m_delta_c = u.delta_e * i.reference_force * p.c_bar_canard_gain_over_i_yy;
+    parameter.pitch_rate.c_m_0 = i.reference_force * p.c_bar_over_i_yy;
 }
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (27).
@@ -1062,35 +690,15 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
 ///
 /// 968 operations: 195 additions, 768 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobianEntries<R> {
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
     let q = sensitivities(x, u, p, &i, &s, &h);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
     parameter_jacobian_by_vehicle(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_environment_of_velocity_environment_of_gamma(
-        &mut parameter,
-        x,
-        u,
-        p,
-        &i,
-        &s,
-        &q,
-    );
-    parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate(
-        &mut parameter,
-        x,
-        u,
-        p,
-        &i,
-        &s,
-        &q,
-    );
+    parameter_jacobian_by_environment_of_velocity_environment_of_gamma(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_modes(&mut parameter, x, p, &i, &s);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, x, u, p, &i, &q);
@@ -1102,10 +710,6 @@ pub fn parameter_jacobian_values<R: Real>(
 
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (27).
 #[inline(always)]
-pub fn parameter_jacobian<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> ParameterJacobian<R> {
+pub fn parameter_jacobian<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobian<R> {
     parameter_jacobian_values(x, u, p).dense()
 }

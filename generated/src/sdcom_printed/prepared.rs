@@ -6,473 +6,103 @@ use super::Parameters;
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Parameters as the functions of this model use them.
+    /// Parameters as the functions of this model use them. A field without a description is what its name says:
+    /// its formula and unit stand in [`prepare`].
     pub struct Prepared<R> {
-        /// Air density at the reference altitude, slug/ft^3.
-        pub rho_0: R,
-        /// Reference altitude of the air density, ft.
-        pub h_0: R,
-        /// `1 / h_s`.
-        pub inv_h_s: R,
-        /// Reference area, ft.
-        pub s: R,
-        /// `1 / m`.
-        pub inv_m: R,
-        /// Coefficient of eta_1 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_1: R,
-        /// Coefficient of eta_1 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_1: R,
-        /// Coefficient of eta_2 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_2: R,
-        /// Coefficient of eta_2 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_2: R,
-        /// Coefficient of eta_3 in C_T, 1/(ft*slug)^0.5.
-        pub c_t_eta_3: R,
-        /// Coefficient of eta_3 in C_D, 1/(ft*slug)^0.5.
-        pub c_d_eta_3: R,
-        /// Coefficient of alpha in C_T, 1/rad.
-        pub c_t_alpha: R,
-        /// Constant part of C_T, dimensionless.
-        pub c_t_0: R,
-        /// Coefficient of alpha in C_D, 1/rad.
-        pub c_d_alpha: R,
-        /// `c_d_delta_e + c_d_delta_c * canard_gain`.
-        pub c_d_delta_e_plus_c_d_delta_c_times_canard_gain: R,
-        /// Constant part of C_D, dimensionless.
-        pub c_d_0: R,
-        /// Acceleration of gravity at sea level, ft/s^2.
-        pub g: R,
         /// Curvature of the Earth, 0 where it is flat, 1/ft.
-        pub earth_curvature: R,
-        /// Coefficient of alpha^2 in C_N_1, (ft/slug)^0.5/rad^2.
-        pub c_n_1_alpha_2: R,
-        /// Coefficient of alpha in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_alpha: R,
-        /// Coefficient of delta_e in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_delta_e: R,
-        /// Coefficient of delta_c in C_N_1, (ft/slug)^0.5/rad.
-        pub c_n_1_delta_c: R,
-        /// Share of the commanded canard deflection: 1 canard free, else 0, dimensionless.
-        pub canard_command: R,
+        earth_curvature,
         /// Canard deflection per elevator deflection, dimensionless.
-        pub canard_gain: R,
-        /// Constant part of C_N_1, (ft/slug)^0.5.
-        pub c_n_1_0: R,
-        /// `inv_omega_1 * inv_omega_1`.
-        pub inv_omega_1_2: R,
-        /// Coefficient of alpha^2 in C_N_2, (ft/slug)^0.5/rad^2.
-        pub c_n_2_alpha_2: R,
-        /// Coefficient of alpha in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_alpha: R,
-        /// Coefficient of delta_e in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_delta_e: R,
-        /// Coefficient of delta_c in C_N_2, (ft/slug)^0.5/rad.
-        pub c_n_2_delta_c: R,
-        /// Constant part of C_N_2, (ft/slug)^0.5.
-        pub c_n_2_0: R,
-        /// `inv_omega_2 * inv_omega_2`.
-        pub inv_omega_2_2: R,
-        /// Coefficient of alpha^2 in C_N_3, (ft/slug)^0.5/rad^2.
-        pub c_n_3_alpha_2: R,
-        /// Coefficient of alpha in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_alpha: R,
-        /// Coefficient of delta_e in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_delta_e: R,
-        /// Coefficient of delta_c in C_N_3, (ft/slug)^0.5/rad.
-        pub c_n_3_delta_c: R,
-        /// Constant part of C_N_3, (ft/slug)^0.5.
-        pub c_n_3_0: R,
-        /// `inv_omega_3 * inv_omega_3`.
-        pub inv_omega_3_2: R,
-        /// Coefficient of phi*alpha in C_T, 1/rad.
-        pub c_t_phi_alpha: R,
-        /// Coefficient of phi in C_T, dimensionless.
-        pub c_t_phi: R,
-        /// `R::HALF * s * inv_m`.
-        pub half_s_over_m: R,
-        /// Coefficient of eta_1 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_1: R,
-        /// Coefficient of eta_2 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_2: R,
-        /// Coefficient of eta_3 in C_L, 1/(ft*slug)^0.5.
-        pub c_l_eta_3: R,
-        /// Constant part of C_L, dimensionless.
-        pub c_l_0: R,
-        /// Coefficient of alpha in C_L, 1/rad.
-        pub c_l_alpha: R,
-        /// `1 / i_yy`.
-        pub inv_i_yy: R,
-        /// `z_t * c_t_eta_1 + c_bar * c_m_eta_1`.
-        pub z_t_c_t_eta_1_plus_c_bar_c_m_eta_1: R,
-        /// `z_t * c_t_eta_2 + c_bar * c_m_eta_2`.
-        pub z_t_c_t_eta_2_plus_c_bar_c_m_eta_2: R,
-        /// `z_t * c_t_eta_3 + c_bar * c_m_eta_3`.
-        pub z_t_c_t_eta_3_plus_c_bar_c_m_eta_3: R,
-        /// Thrust-to-moment coupling arm, ft.
-        pub z_t: R,
-        /// Mean aerodynamic chord, ft.
-        pub c_bar: R,
-        /// Coefficient of alpha^2 in C_M, 1/rad^2.
-        pub c_m_alpha_2: R,
-        /// Coefficient of alpha in C_M, 1/rad.
-        pub c_m_alpha: R,
-        /// Constant part of C_M, dimensionless.
-        pub c_m_0: R,
-        /// `c_bar * inv_i_yy * c_m_delta_e_plus_canard_gain_c_m_delta_c`.
-        pub c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy: R,
+        canard_gain,
         /// Decay rate of the coloured noise of mode 1, 1/s.
-        pub chi_decay_1: R,
+        chi_decay_1,
         /// Decay rate of the coloured noise of mode 2, 1/s.
-        pub chi_decay_2: R,
+        chi_decay_2,
         /// Decay rate of the coloured noise of mode 3, 1/s.
-        pub chi_decay_3: R,
-        /// `s * inv_m`.
-        pub s_over_m: R,
-        /// `2 * g`.
-        pub two_g: R,
-        /// `2 * c_n_1_alpha_2`.
-        pub two_c_n_1_alpha_2: R,
-        /// `2 * c_n_2_alpha_2`.
-        pub two_c_n_2_alpha_2: R,
-        /// `2 * c_n_3_alpha_2`.
-        pub two_c_n_3_alpha_2: R,
-        /// `inv_m * c_t_phi_alpha`.
-        pub c_t_phi_alpha_over_m: R,
-        /// `s * inv_i_yy`.
-        pub s_over_i_yy: R,
-        /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * inv_omega_1_2`.
-        pub z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2: R,
-        /// `z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * inv_omega_2_2`.
-        pub z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2: R,
-        /// `z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * inv_omega_3_2`.
-        pub z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2: R,
+        chi_decay_3,
         /// Partial derivative of g of the pitch_rate row with respect to dynamic pressure, ft^2/s^2/lb.
-        pub slope_of_g_pitch_rate_in_dynamic_pressure: R,
-        /// `2 * c_m_alpha_2`.
-        pub two_c_m_alpha_2: R,
-        /// `inv_i_yy * z_t_c_t_eta_1_plus_c_bar_c_m_eta_1`.
-        pub z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy: R,
-        /// `inv_i_yy * z_t_c_t_eta_2_plus_c_bar_c_m_eta_2`.
-        pub z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy: R,
-        /// `inv_i_yy * z_t_c_t_eta_3_plus_c_bar_c_m_eta_3`.
-        pub z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy: R,
-        /// `-chi_decay_1`.
-        pub minus_chi_decay_1: R,
-        /// `-chi_decay_2`.
-        pub minus_chi_decay_2: R,
-        /// `-chi_decay_3`.
-        pub minus_chi_decay_3: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_1_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_2_d_delta_e: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to delta_e, (ft/slug)^0.5/rad.
-        pub d_c_n_3_d_delta_e: R,
-        /// `inv_m * c_d_delta_e_plus_c_d_delta_c_times_canard_gain`.
-        pub c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m: R,
-        /// `c_n_1_delta_c * canard_command`.
-        pub c_n_1_delta_c_canard_command: R,
-        /// `c_n_2_delta_c * canard_command`.
-        pub c_n_2_delta_c_canard_command: R,
-        /// `c_n_3_delta_c * canard_command`.
-        pub c_n_3_delta_c_canard_command: R,
-        /// `inv_i_yy * z_t`.
-        pub z_t_over_i_yy: R,
-        /// `inv_m * inv_m`.
-        pub inv_m_2: R,
-        /// `R::HALF * inv_omega_1_2`.
-        pub half_inv_omega_1_2: R,
-        /// `R::HALF * inv_omega_2_2`.
-        pub half_inv_omega_2_2: R,
-        /// `R::HALF * inv_omega_3_2`.
-        pub half_inv_omega_3_2: R,
-        /// `inv_h_s * inv_h_s`.
-        pub inv_h_s_2: R,
-        /// `2 * g * earth_curvature * inv_r_e`.
-        pub two_g_earth_curvature_over_r_e: R,
-        /// `R::from_f64(-2.0) * inv_omega_1`.
-        pub minus_two_over_omega_1: R,
-        /// `R::from_f64(-2.0) * inv_omega_2`.
-        pub minus_two_over_omega_2: R,
-        /// `R::from_f64(-2.0) * inv_omega_3`.
-        pub minus_two_over_omega_3: R,
-        /// `inv_omega_1_2 * c_n_1_delta_c`.
-        pub inv_omega_1_2_c_n_1_delta_c: R,
-        /// `inv_omega_2_2 * c_n_2_delta_c`.
-        pub inv_omega_2_2_c_n_2_delta_c: R,
-        /// `inv_omega_3_2 * c_n_3_delta_c`.
-        pub inv_omega_3_2_c_n_3_delta_c: R,
-        /// `inv_m * c_d_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-        pub c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c: R,
-        /// `c_l_delta_e * inv_c_l_delta_c`.
-        pub c_l_delta_e_over_c_l_delta_c: R,
-        /// `R::from_f64(-2.0) * g * inv_r_e`.
-        pub minus_two_g_over_r_e: R,
-        /// `inv_m * c_d_delta_c * canard_slaving * inv_c_l_delta_c`.
-        pub c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c: R,
-        /// `canard_slaving * inv_c_l_delta_c`.
-        pub canard_slaving_over_c_l_delta_c: R,
-        /// `canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub canard_slaving_c_l_delta_e_inv_c_l_delta_c_2: R,
-        /// `inv_m * c_d_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub d_f_velocity_d_c_l_delta_c_constant_1: R,
-        /// `inv_m * canard_gain`.
-        pub canard_gain_over_m: R,
-        /// `R::HALF * inv_m`.
-        pub half_over_m: R,
-        /// `1 / r_e`.
-        pub inv_r_e: R,
-        /// `earth_curvature * earth_curvature`.
-        pub earth_curvature_2: R,
-        /// `R::HALF * inv_m_2`.
-        pub half_inv_m_2: R,
-        /// `2 * inv_omega_1`.
-        pub two_over_omega_1: R,
-        /// `2 * inv_omega_2`.
-        pub two_over_omega_2: R,
-        /// `2 * inv_omega_3`.
-        pub two_over_omega_3: R,
-        /// `inv_i_yy * inv_i_yy`.
-        pub inv_i_yy_2: R,
-        /// `c_m_delta_e_plus_canard_gain_c_m_delta_c * c_bar * inv_i_yy_2`.
-        pub c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2: R,
-        /// Coefficient of eta_1 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_1: R,
-        /// Coefficient of eta_2 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_2: R,
-        /// Coefficient of eta_3 in C_M, 1/(ft*slug)^0.5.
-        pub c_m_eta_3: R,
-        /// `c_m_delta_e_plus_canard_gain_c_m_delta_c * inv_i_yy`.
-        pub c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy: R,
-        /// `R::HALF * s * inv_i_yy`.
-        pub half_s_over_i_yy: R,
-        /// `R::HALF * slope_of_g_pitch_rate_in_dynamic_pressure`.
-        pub half_slope_of_g_pitch_rate_in_dynamic_pressure: R,
-        /// `R::HALF * inv_i_yy`.
-        pub half_over_i_yy: R,
-        /// `c_bar * inv_i_yy * c_m_delta_c * c_l_delta_e * inv_c_l_delta_c`.
-        pub c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c: R,
-        /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * inv_c_l_delta_c`.
-        pub c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c: R,
-        /// `c_bar * inv_i_yy * c_m_delta_c * canard_slaving * c_l_delta_e * inv_c_l_delta_c_2`.
-        pub c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy: R,
-        /// `c_bar * inv_i_yy`.
-        pub c_bar_over_i_yy: R,
-        /// `c_bar * inv_i_yy * canard_gain`.
-        pub c_bar_canard_gain_over_i_yy: R,
-        /// Derivative of decay rate of the coloured noise of mode 1 with respect to omega_1, 1/rad.
-        pub d_chi_decay_1_d_omega_1: R,
-        /// Derivative of decay rate of the coloured noise of mode 1 with respect to zeta_1, 1/s.
-        pub d_chi_decay_1_d_zeta_1: R,
-        /// Derivative of decay rate of the coloured noise of mode 1 with respect to moment_matching, 1/s.
-        pub d_chi_decay_1_d_moment_matching: R,
-        /// Derivative of decay rate of the coloured noise of mode 2 with respect to omega_2, 1/rad.
-        pub d_chi_decay_2_d_omega_2: R,
-        /// Derivative of decay rate of the coloured noise of mode 2 with respect to zeta_2, 1/s.
-        pub d_chi_decay_2_d_zeta_2: R,
-        /// Derivative of decay rate of the coloured noise of mode 2 with respect to moment_matching, 1/s.
-        pub d_chi_decay_2_d_moment_matching: R,
-        /// Derivative of decay rate of the coloured noise of mode 3 with respect to omega_3, 1/rad.
-        pub d_chi_decay_3_d_omega_3: R,
-        /// Derivative of decay rate of the coloured noise of mode 3 with respect to zeta_3, 1/s.
-        pub d_chi_decay_3_d_zeta_3: R,
-        /// Derivative of decay rate of the coloured noise of mode 3 with respect to moment_matching, 1/s.
-        pub d_chi_decay_3_d_moment_matching: R,
-        /// `2 * earth_curvature_2`.
-        pub two_earth_curvature_2: R,
-        /// `c_t_eta_1 * inv_omega_1_2`.
-        pub c_t_eta_1_inv_omega_1_2: R,
-        /// `c_t_eta_2 * inv_omega_2_2`.
-        pub c_t_eta_2_inv_omega_2_2: R,
-        /// `c_t_eta_3 * inv_omega_3_2`.
-        pub c_t_eta_3_inv_omega_3_2: R,
-        /// `inv_m * c_t_alpha`.
-        pub c_t_alpha_over_m: R,
-        /// `inv_m * c_t_eta_1`.
-        pub c_t_eta_1_over_m: R,
-        /// `inv_m * c_t_eta_2`.
-        pub c_t_eta_2_over_m: R,
-        /// `inv_m * c_t_eta_3`.
-        pub c_t_eta_3_over_m: R,
-        /// `2 * inv_i_yy * c_bar * c_m_alpha_2`.
-        pub two_c_bar_c_m_alpha_2_over_i_yy: R,
-        /// Intensity of the white noise w_alpha, rad*s^0.5.
-        pub w_alpha: R,
-        /// Intensity of the white noise w_gamma, rad*s^0.5.
-        pub w_gamma: R,
-        /// Intensity of the white noise w_Q, rad/s^0.5.
-        pub w_q: R,
-        /// `c_bar * c_m_alpha`.
-        pub c_bar_c_m_alpha: R,
+        slope_of_g_pitch_rate_in_dynamic_pressure,
         /// Diffusion of the coloured noise of mode 1, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion_1: R,
-        /// `chi_diffusion_2 * shared_noise`.
-        pub chi_diffusion_2_shared_noise: R,
-        /// `chi_diffusion_2 * own_noise`.
-        pub chi_diffusion_2_own_noise: R,
-        /// `chi_diffusion_3 * shared_noise`.
-        pub chi_diffusion_3_shared_noise: R,
-        /// `chi_diffusion_3 * own_noise`.
-        pub chi_diffusion_3_own_noise: R,
+        chi_diffusion_1,
         /// Diffusion of the coloured noise of mode 2, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion_2: R,
-        /// Correlation of the noise of modes 2, 3, ... with that of mode 1, dimensionless.
-        pub shared_noise: R,
+        chi_diffusion_2,
         /// Share of its own noise in what drives a mode, dimensionless.
-        pub own_noise: R,
+        own_noise,
         /// Diffusion of the coloured noise of mode 3, (ft*slug)^0.5/s^0.5.
-        pub chi_diffusion_3: R,
-        /// `w_alpha * w_gamma`.
-        pub w_alpha_w_gamma: R,
-        /// `w_alpha * w_alpha`.
-        pub w_alpha_2: R,
-        /// `w_alpha * w_q`.
-        pub w_alpha_w_q: R,
-        /// `R::HALF * w_alpha_2`.
-        pub half_w_alpha_2: R,
-        /// Coefficient of phi*alpha^3 in C_T, 1/rad^3.
-        pub c_t_phi_alpha_3: R,
-        /// Coefficient of phi*alpha^2 in C_T, 1/rad^2.
-        pub c_t_phi_alpha_2: R,
-        /// Coefficient of alpha^3 in C_T, 1/rad^3.
-        pub c_t_alpha_3: R,
-        /// Coefficient of alpha^2 in C_T, 1/rad^2.
-        pub c_t_alpha_2: R,
-        /// Coefficient of alpha^2 in C_D, 1/rad^2.
-        pub c_d_alpha_2: R,
-        /// Coefficient of delta_e^2 in C_D, 1/rad^2.
-        pub c_d_delta_e_2: R,
-        /// Coefficient of delta_e in C_D, 1/rad.
-        pub c_d_delta_e: R,
-        /// Coefficient of delta_c^2 in C_D, 1/rad^2.
-        pub c_d_delta_c_2: R,
-        /// Coefficient of delta_c in C_D, 1/rad.
-        pub c_d_delta_c: R,
+        chi_diffusion_3,
         /// Lift coefficient per elevator deflection that the slaved canard leaves, 1/rad.
-        pub elevator_lift: R,
-        /// Coefficient of delta_c in C_L, 1/rad.
-        pub c_l_delta_c: R,
-        /// Coefficient of delta_e in C_M, 1/rad.
-        pub c_m_delta_e: R,
-        /// Coefficient of delta_c in C_M, 1/rad.
-        pub c_m_delta_c: R,
-        /// `3 * c_t_alpha_3`.
-        pub three_c_t_alpha_3: R,
-        /// `2 * c_t_alpha_2`.
-        pub two_c_t_alpha_2: R,
-        /// `3 * c_t_phi_alpha_3`.
-        pub three_c_t_phi_alpha_3: R,
-        /// `2 * c_t_phi_alpha_2`.
-        pub two_c_t_phi_alpha_2: R,
-        /// `2 * c_d_alpha_2`.
-        pub two_c_d_alpha_2: R,
-        /// `c_l_delta_recip()`.
-        pub inv_c_l_delta_c: R,
-        /// `R::ONE - moment_matching`.
-        pub one_minus_moment_matching: R,
-        /// `1 / zeta_1`.
-        pub inv_zeta_1: R,
-        /// `moment_matching * inv_zeta_1`.
-        pub moment_matching_over_zeta_1: R,
-        /// `1 / zeta_2`.
-        pub inv_zeta_2: R,
-        /// `moment_matching * inv_zeta_2`.
-        pub moment_matching_over_zeta_2: R,
-        /// `1 / zeta_3`.
-        pub inv_zeta_3: R,
-        /// `moment_matching * inv_zeta_3`.
-        pub moment_matching_over_zeta_3: R,
-        /// `c_m_delta_e + canard_gain * c_m_delta_c`.
-        pub c_m_delta_e_plus_canard_gain_c_m_delta_c: R,
-        /// `inv_zeta_1 * inv_zeta_1`.
-        pub inv_zeta_1_2: R,
-        /// `inv_zeta_2 * inv_zeta_2`.
-        pub inv_zeta_2_2: R,
-        /// `inv_zeta_3 * inv_zeta_3`.
-        pub inv_zeta_3_2: R,
-        /// `R::ONE - variance_matching - moment_matching`.
-        pub one_minus_variance_matching_minus_moment_matching: R,
+        elevator_lift,
         /// Diffusion of the coloured noise of mode 1 over sigma/omega, dimensionless.
-        pub chi_share_1: R,
-        /// `1 / omega_1`.
-        pub inv_omega_1: R,
+        chi_share_1,
         /// Diffusion of the coloured noise of mode 2 over sigma/omega, dimensionless.
-        pub chi_share_2: R,
-        /// `1 / omega_2`.
-        pub inv_omega_2: R,
+        chi_share_2,
         /// Diffusion of the coloured noise of mode 3 over sigma/omega, dimensionless.
-        pub chi_share_3: R,
-        /// `1 / omega_3`.
-        pub inv_omega_3: R,
-        /// `inv_c_l_delta_c * inv_c_l_delta_c`.
-        pub inv_c_l_delta_c_2: R,
+        chi_share_3,
+        inv_h_s, inv_m, c_d_delta_e_plus_c_d_delta_c_times_canard_gain, inv_omega_1_2, inv_omega_2_2, inv_omega_3_2,
+        half_s_over_m, inv_i_yy, z_t_c_t_eta_1_plus_c_bar_c_m_eta_1, z_t_c_t_eta_2_plus_c_bar_c_m_eta_2,
+        z_t_c_t_eta_3_plus_c_bar_c_m_eta_3, c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy, s_over_m,
+        two_g, two_c_n_1_alpha_2, two_c_n_2_alpha_2, two_c_n_3_alpha_2, c_t_phi_alpha_over_m, s_over_i_yy,
+        z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2, z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2,
+        z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2, two_c_m_alpha_2,
+        z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy, z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy,
+        z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy, minus_chi_decay_1, minus_chi_decay_2, minus_chi_decay_3,
+        d_c_n_1_d_delta_e, d_c_n_2_d_delta_e, d_c_n_3_d_delta_e, c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m,
+        c_n_1_delta_c_canard_command, c_n_2_delta_c_canard_command, c_n_3_delta_c_canard_command, z_t_over_i_yy,
+        inv_m_2, half_inv_omega_1_2, half_inv_omega_2_2, half_inv_omega_3_2, inv_h_s_2, two_g_earth_curvature_over_r_e,
+        minus_two_over_omega_1, minus_two_over_omega_2, minus_two_over_omega_3, inv_omega_1_2_c_n_1_delta_c,
+        inv_omega_2_2_c_n_2_delta_c, inv_omega_3_2_c_n_3_delta_c, c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c,
+        c_l_delta_e_over_c_l_delta_c, minus_two_g_over_r_e, c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c,
+        canard_slaving_over_c_l_delta_c, canard_slaving_c_l_delta_e_inv_c_l_delta_c_2,
+        d_f_velocity_d_c_l_delta_c_constant_1, canard_gain_over_m, half_over_m, inv_r_e, earth_curvature_2,
+        half_inv_m_2, two_over_omega_1, two_over_omega_2, two_over_omega_3, inv_i_yy_2,
+        c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2,
+        c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy, half_s_over_i_yy,
+        half_slope_of_g_pitch_rate_in_dynamic_pressure, half_over_i_yy,
+        c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c, c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c,
+        c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy, c_bar_over_i_yy,
+        c_bar_canard_gain_over_i_yy, d_chi_decay_1_d_omega_1, d_chi_decay_1_d_zeta_1, d_chi_decay_1_d_moment_matching,
+        d_chi_decay_2_d_omega_2, d_chi_decay_2_d_zeta_2, d_chi_decay_2_d_moment_matching, d_chi_decay_3_d_omega_3,
+        d_chi_decay_3_d_zeta_3, d_chi_decay_3_d_moment_matching, two_earth_curvature_2, c_t_eta_1_inv_omega_1_2,
+        c_t_eta_2_inv_omega_2_2, c_t_eta_3_inv_omega_3_2, c_t_alpha_over_m, c_t_eta_1_over_m, c_t_eta_2_over_m,
+        c_t_eta_3_over_m, two_c_bar_c_m_alpha_2_over_i_yy, c_bar_c_m_alpha, chi_diffusion_2_shared_noise,
+        chi_diffusion_2_own_noise, chi_diffusion_3_shared_noise, chi_diffusion_3_own_noise, w_alpha_w_gamma, w_alpha_2,
+        w_alpha_w_q, half_w_alpha_2, three_c_t_alpha_3, two_c_t_alpha_2, three_c_t_phi_alpha_3, two_c_t_phi_alpha_2,
+        two_c_d_alpha_2, inv_c_l_delta_c, one_minus_moment_matching, inv_zeta_1, moment_matching_over_zeta_1,
+        inv_zeta_2, moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3,
+        c_m_delta_e_plus_canard_gain_c_m_delta_c, inv_zeta_1_2, inv_zeta_2_2, inv_zeta_3_2,
+        one_minus_variance_matching_minus_moment_matching, inv_omega_1, inv_omega_2, inv_omega_3, inv_c_l_delta_c_2,
+    }
+    from Parameters {
+        rho_0, h_0,
+        s,
+        c_t_eta_1,
+        c_d_eta_1,
+        c_t_eta_2,
+        c_d_eta_2,
+        c_t_eta_3,
+        c_d_eta_3,
+        c_t_alpha, c_t_0,
+        c_d_alpha, c_d_0,
+        g,
+        c_n_1_alpha_2, c_n_1_alpha, c_n_1_delta_e, c_n_1_delta_c,
+        canard_command,
+        c_n_1_0,
+        c_n_2_alpha_2, c_n_2_alpha, c_n_2_delta_e, c_n_2_delta_c, c_n_2_0,
+        c_n_3_alpha_2, c_n_3_alpha, c_n_3_delta_e, c_n_3_delta_c, c_n_3_0,
+        c_t_phi_alpha, c_t_phi,
+        c_l_eta_1, c_l_eta_2, c_l_eta_3, c_l_0, c_l_alpha,
+        z_t, c_bar,
+        c_m_alpha_2, c_m_alpha, c_m_0, c_m_eta_1, c_m_eta_2, c_m_eta_3,
+        w_alpha, w_gamma, w_q,
+        shared_noise,
+        c_t_phi_alpha_3, c_t_phi_alpha_2, c_t_alpha_3, c_t_alpha_2,
+        c_d_alpha_2, c_d_delta_e_2, c_d_delta_e, c_d_delta_c_2, c_d_delta_c,
+        c_l_delta_c,
+        c_m_delta_e, c_m_delta_c,
     }
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    c.rho_0 = p.rho_0;
-    c.h_0 = p.h_0;
-    c.s = p.s;
-    c.c_t_eta_1 = p.c_t_eta_1;
-    c.c_d_eta_1 = p.c_d_eta_1;
-    c.c_t_eta_2 = p.c_t_eta_2;
-    c.c_d_eta_2 = p.c_d_eta_2;
-    c.c_t_eta_3 = p.c_t_eta_3;
-    c.c_d_eta_3 = p.c_d_eta_3;
-    c.c_t_alpha = p.c_t_alpha;
-    c.c_t_0 = p.c_t_0;
-    c.c_d_alpha = p.c_d_alpha;
-    c.c_d_0 = p.c_d_0;
-    c.g = p.g;
-    c.c_n_1_alpha_2 = p.c_n_1_alpha_2;
-    c.c_n_1_alpha = p.c_n_1_alpha;
-    c.c_n_1_delta_e = p.c_n_1_delta_e;
-    c.c_n_1_delta_c = p.c_n_1_delta_c;
-    c.canard_command = p.canard_command;
-    c.c_n_1_0 = p.c_n_1_0;
-    c.c_n_2_alpha_2 = p.c_n_2_alpha_2;
-    c.c_n_2_alpha = p.c_n_2_alpha;
-    c.c_n_2_delta_e = p.c_n_2_delta_e;
-    c.c_n_2_delta_c = p.c_n_2_delta_c;
-    c.c_n_2_0 = p.c_n_2_0;
-    c.c_n_3_alpha_2 = p.c_n_3_alpha_2;
-    c.c_n_3_alpha = p.c_n_3_alpha;
-    c.c_n_3_delta_e = p.c_n_3_delta_e;
-    c.c_n_3_delta_c = p.c_n_3_delta_c;
-    c.c_n_3_0 = p.c_n_3_0;
-    c.c_t_phi_alpha = p.c_t_phi_alpha;
-    c.c_t_phi = p.c_t_phi;
-    c.c_l_eta_1 = p.c_l_eta_1;
-    c.c_l_eta_2 = p.c_l_eta_2;
-    c.c_l_eta_3 = p.c_l_eta_3;
-    c.c_l_0 = p.c_l_0;
-    c.c_l_alpha = p.c_l_alpha;
-    c.z_t = p.z_t;
-    c.c_bar = p.c_bar;
-    c.c_m_alpha_2 = p.c_m_alpha_2;
-    c.c_m_alpha = p.c_m_alpha;
-    c.c_m_0 = p.c_m_0;
-    c.c_m_eta_1 = p.c_m_eta_1;
-    c.c_m_eta_2 = p.c_m_eta_2;
-    c.c_m_eta_3 = p.c_m_eta_3;
-    c.w_alpha = p.w_alpha;
-    c.w_gamma = p.w_gamma;
-    c.w_q = p.w_q;
-    c.shared_noise = p.shared_noise;
-    c.c_t_phi_alpha_3 = p.c_t_phi_alpha_3;
-    c.c_t_phi_alpha_2 = p.c_t_phi_alpha_2;
-    c.c_t_alpha_3 = p.c_t_alpha_3;
-    c.c_t_alpha_2 = p.c_t_alpha_2;
-    c.c_d_alpha_2 = p.c_d_alpha_2;
-    c.c_d_delta_e_2 = p.c_d_delta_e_2;
-    c.c_d_delta_e = p.c_d_delta_e;
-    c.c_d_delta_c_2 = p.c_d_delta_c_2;
-    c.c_d_delta_c = p.c_d_delta_c;
-    c.c_l_delta_c = p.c_l_delta_c;
-    c.c_m_delta_e = p.c_m_delta_e;
-    c.c_m_delta_c = p.c_m_delta_c;
-
     // Gravity, (1)
     c.inv_r_e = p.r_e.recip();
     c.earth_curvature = p.spherical_earth * c.inv_r_e; // 1/ft
@@ -498,19 +128,13 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.moment_matching_over_zeta_3 = p.moment_matching * c.inv_zeta_3;
     c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Coloured noise, (23)
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to velocity
-    c.c_m_delta_e_plus_canard_gain_c_m_delta_c = p.c_m_delta_e
-        + c.canard_gain * p.c_m_delta_c;
+    c.c_m_delta_e_plus_canard_gain_c_m_delta_c = p.c_m_delta_e + c.canard_gain * p.c_m_delta_c;
     c.inv_i_yy = p.i_yy.recip();
-    c.slope_of_g_pitch_rate_in_dynamic_pressure = c
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c * p.c_bar * p.s * c.inv_i_yy; // ft^2/s^2/lb
+    c.slope_of_g_pitch_rate_in_dynamic_pressure = c.c_m_delta_e_plus_canard_gain_c_m_delta_c
+        * p.c_bar * p.s * c.inv_i_yy; // ft^2/s^2/lb
 
     // Derivatives with respect to delta_e
     c.d_c_n_1_d_delta_e = p.c_n_1_delta_e + p.c_n_1_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
@@ -532,14 +156,17 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * c.inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    c.one_minus_variance_matching_minus_moment_matching = R::ONE
-        - p.variance_matching
-        - p.moment_matching;
+    c.one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
     c.chi_share_1 = p.zeta_1 * c.one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_1;
     c.inv_omega_1 = p.omega_1.recip();
     c.chi_diffusion_1 = c.chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Coloured noise, (23)
     c.chi_share_2 = p.zeta_2 * c.one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_2;
@@ -557,8 +184,7 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
-    c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain = p.c_d_delta_e
-        + p.c_d_delta_c * c.canard_gain;
+    c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain = p.c_d_delta_e + p.c_d_delta_c * c.canard_gain;
     c.inv_omega_1_2 = c.inv_omega_1 * c.inv_omega_1;
     c.inv_omega_2_2 = c.inv_omega_2 * c.inv_omega_2;
     c.inv_omega_3_2 = c.inv_omega_3 * c.inv_omega_3;
@@ -566,8 +192,8 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 = p.z_t * p.c_t_eta_1 + p.c_bar * p.c_m_eta_1;
     c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 = p.z_t * p.c_t_eta_2 + p.c_bar * p.c_m_eta_2;
     c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 = p.z_t * p.c_t_eta_3 + p.c_bar * p.c_m_eta_3;
-    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy = p.c_bar
-        * c.inv_i_yy * c.c_m_delta_e_plus_canard_gain_c_m_delta_c;
+    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy = p.c_bar * c.inv_i_yy
+        * c.c_m_delta_e_plus_canard_gain_c_m_delta_c;
     c.s_over_m = p.s * c.inv_m;
     c.two_g = R::TWO * p.g;
     c.two_c_n_1_alpha_2 = R::TWO * p.c_n_1_alpha_2;
@@ -575,29 +201,17 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_n_3_alpha_2 = R::TWO * p.c_n_3_alpha_2;
     c.c_t_phi_alpha_over_m = c.inv_m * p.c_t_phi_alpha;
     c.s_over_i_yy = p.s * c.inv_i_yy;
-    c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2 = c
-        .z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * c.inv_omega_1_2;
-    c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2 = c
-        .z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * c.inv_omega_2_2;
-    c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 = c
-        .z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * c.inv_omega_3_2;
+    c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2 = c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * c.inv_omega_1_2;
+    c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2 = c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * c.inv_omega_2_2;
+    c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_omega_3_2 = c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * c.inv_omega_3_2;
     c.two_c_m_alpha_2 = R::TWO * p.c_m_alpha_2;
-    c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy = c.inv_i_yy
-        * c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
-    c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy = c.inv_i_yy
-        * c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2;
-    c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy = c.inv_i_yy
-        * c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3;
+    c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy = c.inv_i_yy * c.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1;
+    c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy = c.inv_i_yy * c.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2;
+    c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy = c.inv_i_yy * c.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3;
     c.minus_chi_decay_1 = -c.chi_decay_1;
     c.minus_chi_decay_2 = -c.chi_decay_2;
     c.minus_chi_decay_3 = -c.chi_decay_3;
-    c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m = c.inv_m
-        * c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain;
+    c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m = c.inv_m * c.c_d_delta_e_plus_c_d_delta_c_times_canard_gain;
     c.c_n_1_delta_c_canard_command = p.c_n_1_delta_c * p.canard_command;
     c.c_n_2_delta_c_canard_command = p.c_n_2_delta_c * p.canard_command;
     c.c_n_3_delta_c_canard_command = p.c_n_3_delta_c * p.canard_command;
@@ -608,24 +222,28 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.half_inv_omega_3_2 = R::HALF * c.inv_omega_3_2;
     c.inv_h_s_2 = c.inv_h_s * c.inv_h_s;
     c.two_g_earth_curvature_over_r_e = R::TWO * p.g * c.earth_curvature * c.inv_r_e;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
     c.minus_two_over_omega_1 = R::from_f64(-2.0) * c.inv_omega_1;
     c.minus_two_over_omega_2 = R::from_f64(-2.0) * c.inv_omega_2;
     c.minus_two_over_omega_3 = R::from_f64(-2.0) * c.inv_omega_3;
     c.inv_omega_1_2_c_n_1_delta_c = c.inv_omega_1_2 * p.c_n_1_delta_c;
     c.inv_omega_2_2_c_n_2_delta_c = c.inv_omega_2_2 * p.c_n_2_delta_c;
     c.inv_omega_3_2_c_n_3_delta_c = c.inv_omega_3_2 * p.c_n_3_delta_c;
-    c.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c = c.inv_m * p.c_d_delta_c
-        * p.c_l_delta_e * c.inv_c_l_delta_c;
+    c.c_d_delta_c_times_c_l_delta_e_times_inv_m_c_l_delta_c = c.inv_m * p.c_d_delta_c * p.c_l_delta_e
+        * c.inv_c_l_delta_c;
     c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
-    c.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c = c.inv_m * p.c_d_delta_c
-        * p.canard_slaving * c.inv_c_l_delta_c;
+    c.c_d_delta_c_times_canard_slaving_times_inv_m_c_l_delta_c = c.inv_m * p.c_d_delta_c * p.canard_slaving
+        * c.inv_c_l_delta_c;
     c.canard_slaving_over_c_l_delta_c = p.canard_slaving * c.inv_c_l_delta_c;
     c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
-    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e
+    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
+    c.d_f_velocity_d_c_l_delta_c_constant_1 = c.inv_m * p.c_d_delta_c * p.canard_slaving * p.c_l_delta_e
         * c.inv_c_l_delta_c_2;
-    c.d_f_velocity_d_c_l_delta_c_constant_1 = c.inv_m * p.c_d_delta_c * p.canard_slaving
-        * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.canard_gain_over_m = c.inv_m * c.canard_gain;
     c.half_over_m = R::HALF * c.inv_m;
     c.earth_curvature_2 = c.earth_curvature * c.earth_curvature;
@@ -634,21 +252,18 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_over_omega_2 = R::TWO * c.inv_omega_2;
     c.two_over_omega_3 = R::TWO * c.inv_omega_3;
     c.inv_i_yy_2 = c.inv_i_yy * c.inv_i_yy;
-    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2 = c
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c * p.c_bar * c.inv_i_yy_2;
-    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy = c
-        .c_m_delta_e_plus_canard_gain_c_m_delta_c * c.inv_i_yy;
+    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_inv_i_yy_2 = c.c_m_delta_e_plus_canard_gain_c_m_delta_c
+        * p.c_bar * c.inv_i_yy_2;
+    c.c_m_delta_e_plus_canard_gain_c_m_delta_c_times_inv_i_yy = c.c_m_delta_e_plus_canard_gain_c_m_delta_c * c.inv_i_yy;
     c.half_s_over_i_yy = R::HALF * p.s * c.inv_i_yy;
-    c.half_slope_of_g_pitch_rate_in_dynamic_pressure = R::HALF
-        * c.slope_of_g_pitch_rate_in_dynamic_pressure;
+    c.half_slope_of_g_pitch_rate_in_dynamic_pressure = R::HALF * c.slope_of_g_pitch_rate_in_dynamic_pressure;
     c.half_over_i_yy = R::HALF * c.inv_i_yy;
-    c.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c = p.c_bar * c.inv_i_yy
-        * p.c_m_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
-    c.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c = p.c_bar * c.inv_i_yy
-        * p.c_m_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
-    c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar
-        * c.inv_i_yy * p.c_m_delta_c * p.canard_slaving * p.c_l_delta_e
-        * c.inv_c_l_delta_c_2;
+    c.c_bar_c_m_delta_c_c_l_delta_e_over_i_yy_c_l_delta_c = p.c_bar * c.inv_i_yy * p.c_m_delta_c * p.c_l_delta_e
+        * c.inv_c_l_delta_c;
+    c.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c = p.c_bar * c.inv_i_yy * p.c_m_delta_c * p.canard_slaving
+        * c.inv_c_l_delta_c;
+    c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar * c.inv_i_yy * p.c_m_delta_c
+        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
     c.c_bar_canard_gain_over_i_yy = p.c_bar * c.inv_i_yy * c.canard_gain;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
@@ -680,7 +295,7 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 ///
 /// 221 operations: 32 additions, 177 multiplications, 11 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
-    let mut c = Prepared::splat(R::ZERO);
+    let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);
     prepare_part_2(&mut c, p);
     prepare_part_3(&mut c, p);

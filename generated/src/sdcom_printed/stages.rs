@@ -6,136 +6,96 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 ahv_core::record! {
-    /// Quantities of the drift that other functions need.
+    /// Quantities of the drift that other functions need. A field without a description is what its name says:
+    /// its formula and unit stand in [`intermediates`].
     pub struct Intermediates<R> {
         /// Air density over its reference, dimensionless.
-        pub density_ratio: R,
+        density_ratio,
         /// Air density, slug/ft^3.
-        pub density: R,
-        /// `x.velocity * x.velocity`.
-        pub velocity_2: R,
+        density,
         /// Dynamic pressure, lb/ft^2.
-        pub dynamic_pressure: R,
+        dynamic_pressure,
         /// Dynamic pressure times reference area, lb/ft.
-        pub reference_force: R,
+        reference_force,
         /// Sin of the angle of attack, dimensionless.
-        pub sin_alpha: R,
+        sin_alpha,
         /// Cos of the angle of attack, dimensionless.
-        pub cos_alpha: R,
+        cos_alpha,
         /// Sin of the flight-path angle, dimensionless.
-        pub sin_gamma: R,
+        sin_gamma,
         /// Cos of the flight-path angle, dimensionless.
-        pub cos_gamma: R,
+        cos_gamma,
         /// Radius of the Earth over the distance to its centre, dimensionless.
-        pub radius_ratio: R,
-        /// `i.radius_ratio * i.radius_ratio`.
-        pub radius_ratio_2: R,
+        radius_ratio,
         /// Acceleration of gravity at altitude, ft/s^2.
-        pub gravity: R,
-        /// `1 / x.velocity`.
-        pub inv_velocity: R,
+        gravity,
         /// Turn rate of a level path by gravity, less that of the Earth's curvature, 1/s.
-        pub gravity_turn: R,
+        gravity_turn,
         /// Turn rate per force coefficient across the flight path, 1/s.
-        pub turn_factor: R,
+        turn_factor,
         /// Canard deflection as commanded, rad.
-        pub canard_commanded: R,
+        canard_commanded,
         /// Canard deflection, commanded and slaved, rad.
-        pub canard_deflection: R,
-        /// `x.alpha * x.alpha`.
-        pub alpha_2: R,
+        canard_deflection,
         /// Generalized-force coefficient of mode 1, (ft/slug)^0.5.
-        pub c_n_1: R,
+        c_n_1,
         /// Generalized-force coefficient of mode 2, (ft/slug)^0.5.
-        pub c_n_2: R,
+        c_n_2,
         /// Generalized-force coefficient of mode 3, (ft/slug)^0.5.
-        pub c_n_3: R,
+        c_n_3,
         /// Generalized force of mode 1, (ft*slug)^0.5/s^2.
-        pub generalized_force_1: R,
+        generalized_force_1,
         /// Generalized force of mode 2, (ft*slug)^0.5/s^2.
-        pub generalized_force_2: R,
+        generalized_force_2,
         /// Generalized force of mode 3, (ft*slug)^0.5/s^2.
-        pub generalized_force_3: R,
+        generalized_force_3,
         /// Rate of the altitude, ft/s.
-        pub altitude_rate: R,
-        /// `i.cos_alpha * c_t_eta_1 - c_d_eta_1`.
-        pub cos_alpha_c_t_eta_1_minus_c_d_eta_1: R,
-        /// `i.generalized_force_1 * inv_omega_1_2`.
-        pub generalized_force_1_inv_omega_1_2: R,
-        /// `i.cos_alpha * c_t_eta_2 - c_d_eta_2`.
-        pub cos_alpha_c_t_eta_2_minus_c_d_eta_2: R,
-        /// `i.generalized_force_2 * inv_omega_2_2`.
-        pub generalized_force_2_inv_omega_2_2: R,
-        /// `i.cos_alpha * c_t_eta_3 - c_d_eta_3`.
-        pub cos_alpha_c_t_eta_3_minus_c_d_eta_3: R,
-        /// `i.generalized_force_3 * inv_omega_3_2`.
-        pub generalized_force_3_inv_omega_3_2: R,
+        altitude_rate,
         /// F of the velocity row, flexible part, ft/s^2.
-        pub f_velocity_eta: R,
-        /// `c_t_alpha * x.alpha`.
-        pub c_t_alpha_alpha: R,
+        f_velocity_eta,
         /// F of the velocity row, ft/s^2.
-        pub f_velocity: R,
+        f_velocity,
         /// G of the velocity row, ft/s^2.
-        pub g_velocity: R,
-        /// `i.sin_alpha * c_t_eta_1 + c_l_eta_1`.
-        pub sin_alpha_c_t_eta_1_plus_c_l_eta_1: R,
-        /// `i.sin_alpha * c_t_eta_2 + c_l_eta_2`.
-        pub sin_alpha_c_t_eta_2_plus_c_l_eta_2: R,
-        /// `i.sin_alpha * c_t_eta_3 + c_l_eta_3`.
-        pub sin_alpha_c_t_eta_3_plus_c_l_eta_3: R,
-        /// `i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * i.generalized_force_1_inv_omega_1_2 +
-        /// i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * i.generalized_force_2_inv_omega_2_2 +
-        /// i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * i.generalized_force_3_inv_omega_3_2`.
-        pub sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2: R,
+        g_velocity,
         /// F of the gamma row, flexible part, rad/s.
-        pub f_gamma_eta: R,
-        /// `c_t_phi * u.phi`.
-        pub c_t_phi_phi: R,
-        /// `c_l_0 + i.sin_alpha * (i.c_t_phi_phi + c_t_0)`.
-        pub c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha: R,
-        /// `i.gravity_turn * i.cos_gamma`.
-        pub gravity_turn_cos_gamma: R,
+        f_gamma_eta,
         /// F of the gamma row, rad/s.
-        pub f_gamma: R,
-        /// `c_l_alpha + i.sin_alpha * (c_t_alpha + c_t_phi_alpha * u.phi)`.
-        pub c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha: R,
+        f_gamma,
         /// G of the gamma row, 1/s.
-        pub g_gamma: R,
+        g_gamma,
         /// F of the alpha row, flexible part, rad/s.
-        pub f_alpha_eta: R,
-        /// `c_t_phi_alpha * u.phi * x.alpha + i.c_t_alpha_alpha + i.c_t_phi_phi + c_t_0`.
-        pub c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0: R,
+        f_alpha_eta,
         /// F of the alpha row, rad/s.
-        pub f_alpha: R,
+        f_alpha,
         /// F of the pitch_rate row, flexible part, rad/s^2.
-        pub f_pitch_rate_eta: R,
+        f_pitch_rate_eta,
         /// F of the pitch_rate row, rad/s^2.
-        pub f_pitch_rate: R,
+        f_pitch_rate,
         /// G of the pitch_rate row, 1/s^2.
-        pub g_pitch_rate: R,
+        g_pitch_rate,
         /// Rate of velocity in the printed form, ft/s^2.
-        pub velocity_rate_printed: R,
-        /// `sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 +
-        /// sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3`.
-        pub sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi: R,
+        velocity_rate_printed,
         /// Rate of gamma in the printed form, rad/s.
-        pub gamma_rate_printed: R,
+        gamma_rate_printed,
         /// Rate of alpha in the printed form, rad/s.
-        pub alpha_rate_printed: R,
+        alpha_rate_printed,
         /// Rate of pitch_rate in the printed form, rad/s^2.
-        pub pitch_rate_rate_printed: R,
+        pitch_rate_rate_printed,
+        velocity_2, radius_ratio_2, inv_velocity, alpha_2, cos_alpha_c_t_eta_1_minus_c_d_eta_1,
+        generalized_force_1_inv_omega_1_2, cos_alpha_c_t_eta_2_minus_c_d_eta_2, generalized_force_2_inv_omega_2_2,
+        cos_alpha_c_t_eta_3_minus_c_d_eta_3, generalized_force_3_inv_omega_3_2, c_t_alpha_alpha,
+        sin_alpha_c_t_eta_1_plus_c_l_eta_1, sin_alpha_c_t_eta_2_plus_c_l_eta_2, sin_alpha_c_t_eta_3_plus_c_l_eta_3,
+        sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2, c_t_phi_phi,
+        c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha, gravity_turn_cos_gamma,
+        c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha,
+        c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0,
+        sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi,
     }
 }
 
 /// Fills a part of [`Intermediates`].
 #[inline(always)]
-fn intermediates_part_1<R: Real>(
-    i: &mut Intermediates<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) {
+fn intermediates_part_1<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>) {
     // Air, (2)
     i.density_ratio = ((p.h_0 - x.altitude) * p.inv_h_s).exp();
     i.density = p.rho_0 * i.density_ratio; // slug/ft^3
@@ -152,8 +112,7 @@ fn intermediates_part_1<R: Real>(
     i.radius_ratio_2 = i.radius_ratio * i.radius_ratio;
     i.gravity = p.g * i.radius_ratio_2; // ft/s^2
     i.inv_velocity = x.velocity.recip();
-    i.gravity_turn = i.gravity * i.inv_velocity
-        - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
+    i.gravity_turn = i.gravity * i.inv_velocity - p.earth_curvature * i.radius_ratio * x.velocity; // 1/s
 
     // Motion, (1)
     i.turn_factor = i.density * x.velocity * p.half_s_over_m; // 1/s
@@ -205,12 +164,7 @@ fn intermediates_part_1<R: Real>(
 
 /// Fills a part of [`Intermediates`].
 #[inline(always)]
-fn intermediates_part_2<R: Real>(
-    i: &mut Intermediates<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) {
+fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>) {
     // Strict-feedback form, (29)
     i.f_velocity = i.reference_force * p.inv_m
         * (i.cos_alpha * (i.c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
@@ -228,16 +182,14 @@ fn intermediates_part_2<R: Real>(
     i.f_gamma_eta = i.turn_factor
         * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2; // rad/s
     i.c_t_phi_phi = p.c_t_phi * u.phi;
-    i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0
-        + i.sin_alpha * (i.c_t_phi_phi + p.c_t_0);
+    i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0 + i.sin_alpha * (i.c_t_phi_phi + p.c_t_0);
     i.gravity_turn_cos_gamma = i.gravity_turn * i.cos_gamma;
     i.f_gamma = i.turn_factor * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - i.gravity_turn_cos_gamma
         + i.f_gamma_eta; // rad/s
     i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha = p.c_l_alpha
         + i.sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
-    i.g_gamma = i.turn_factor
-        * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha; // 1/s
+    i.g_gamma = i.turn_factor * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha; // 1/s
     i.f_alpha_eta = -i.f_gamma_eta; // rad/s
     i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0 = p.c_t_phi_alpha * u.phi * x.alpha
         + i.c_t_alpha_alpha
@@ -269,12 +221,9 @@ fn intermediates_part_2<R: Real>(
             + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2
             + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3) + i.f_velocity
         + i.g_velocity * u.phi; // ft/s^2
-    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = i
-        .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1;
-    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = i
-        .sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2;
-    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = i
-        .sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
+    let sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1 = i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * x.chi_1;
+    let sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2 = i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * x.chi_2;
+    let sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3 = i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * x.chi_3;
     i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi = sin_alpha_c_t_eta_1_plus_c_l_eta_1_times_chi_1
         + sin_alpha_c_t_eta_2_plus_c_l_eta_2_times_chi_2
         + sin_alpha_c_t_eta_3_plus_c_l_eta_3_times_chi_3;
@@ -294,11 +243,7 @@ fn intermediates_part_2<R: Real>(
 
 /// Computes [`Intermediates`].
 #[inline(always)]
-pub fn intermediates<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-) -> Intermediates<R> {
+pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
     intermediates_part_1(&mut i, x, u, p);
     intermediates_part_2(&mut i, x, u, p);
@@ -306,196 +251,92 @@ pub fn intermediates<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the Jacobians that other functions need.
+    /// Quantities of the Jacobians that other functions need. A field without a description is what its name
+    /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Derivative of dynamic pressure with respect to velocity, lb*s/ft^3.
-        pub d_dynamic_pressure_d_velocity: R,
-        /// `i.c_t_alpha_alpha + c_t_0`.
-        pub c_t_alpha_alpha_plus_c_t_0: R,
         /// Partial derivative of f of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
-        pub slope_of_f_velocity_in_dynamic_pressure: R,
+        slope_of_f_velocity_in_dynamic_pressure,
         /// Partial derivative of f of the velocity row, flexible part with respect to dynamic pressure, ft^3/s^2/lb.
-        pub slope_of_f_velocity_eta_in_dynamic_pressure: R,
-        /// Derivative of dynamic pressure times reference area with respect to velocity, lb*s/ft^2.
-        pub d_reference_force_d_velocity: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity, slug^0.5/ft^0.5/s.
-        pub d_generalized_force_1_d_velocity: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity, slug^0.5/ft^0.5/s.
-        pub d_generalized_force_2_d_velocity: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity, slug^0.5/ft^0.5/s.
-        pub d_generalized_force_3_d_velocity: R,
-        /// `c_t_phi_alpha * x.alpha + c_t_phi`.
-        pub c_t_phi_alpha_alpha_plus_c_t_phi: R,
+        slope_of_f_velocity_eta_in_dynamic_pressure,
         /// Partial derivative of g of the velocity row with respect to dynamic pressure, ft^3/s^2/lb.
-        pub slope_of_g_velocity_in_dynamic_pressure: R,
-        /// `i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * x.chi_1 + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * x.chi_2 +
-        /// i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * x.chi_3`.
-        pub sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity, 1/ft.
-        pub d_turn_factor_d_velocity: R,
-        /// `i.inv_velocity * i.inv_velocity`.
-        pub inv_velocity_2: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// velocity, 1/ft.
-        pub d_gravity_turn_d_velocity: R,
+        slope_of_g_velocity_in_dynamic_pressure,
         /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 1,
         /// rad*s/ft^0.5/slug^0.5.
-        pub slope_of_f_gamma_eta_in_generalized_force_1: R,
+        slope_of_f_gamma_eta_in_generalized_force_1,
         /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 2,
         /// rad*s/ft^0.5/slug^0.5.
-        pub slope_of_f_gamma_eta_in_generalized_force_2: R,
+        slope_of_f_gamma_eta_in_generalized_force_2,
         /// Partial derivative of f of the gamma row, flexible part with respect to generalized force of mode 3,
         /// rad*s/ft^0.5/slug^0.5.
-        pub slope_of_f_gamma_eta_in_generalized_force_3: R,
-        /// Derivative of g of the gamma row with respect to velocity, 1/ft.
-        pub d_g_gamma_d_velocity: R,
+        slope_of_f_gamma_eta_in_generalized_force_3,
         /// Partial derivative of rate of alpha in the printed form with respect to turn rate per force coefficient
         /// across the flight path, rad.
-        pub slope_of_alpha_rate_printed_in_turn_factor: R,
+        slope_of_alpha_rate_printed_in_turn_factor,
         /// Partial derivative of f of the alpha row with respect to turn rate per force coefficient across the flight
         /// path, rad.
-        pub slope_of_f_alpha_in_turn_factor: R,
+        slope_of_f_alpha_in_turn_factor,
         /// Partial derivative of f of the alpha row, flexible part with respect to turn rate per force coefficient
         /// across the flight path, rad.
-        pub slope_of_f_alpha_eta_in_turn_factor: R,
+        slope_of_f_alpha_eta_in_turn_factor,
         /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 1,
         /// rad*s/ft^0.5/slug^0.5.
-        pub slope_of_f_alpha_eta_in_generalized_force_1: R,
+        slope_of_f_alpha_eta_in_generalized_force_1,
         /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 2,
         /// rad*s/ft^0.5/slug^0.5.
-        pub slope_of_f_alpha_eta_in_generalized_force_2: R,
+        slope_of_f_alpha_eta_in_generalized_force_2,
         /// Partial derivative of f of the alpha row, flexible part with respect to generalized force of mode 3,
         /// rad*s/ft^0.5/slug^0.5.
-        pub slope_of_f_alpha_eta_in_generalized_force_3: R,
+        slope_of_f_alpha_eta_in_generalized_force_3,
         /// Partial derivative of f of the pitch_rate row with respect to dynamic pressure, rad*ft^2/s^2/lb.
-        pub slope_of_f_pitch_rate_in_dynamic_pressure: R,
-        /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2 +
-        /// z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * i.generalized_force_2_inv_omega_2_2 +
-        /// z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * i.generalized_force_3_inv_omega_3_2`.
-        pub sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2: R,
-        /// `z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * x.chi_1 + z_t_c_t_eta_2_plus_c_bar_c_m_eta_2 * x.chi_2 +
-        /// z_t_c_t_eta_3_plus_c_bar_c_m_eta_3 * x.chi_3`.
-        pub sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi: R,
-        /// Derivative of air density with respect to altitude, slug/ft^4.
-        pub d_density_d_altitude: R,
-        /// Derivative of dynamic pressure with respect to altitude, lb/ft^3.
-        pub d_dynamic_pressure_d_altitude: R,
-        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude, 1/ft.
-        pub d_radius_ratio_d_altitude: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude, 1/s^2.
-        pub d_gravity_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude, lb/ft^2.
-        pub d_reference_force_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_1_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_2_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_3_d_altitude: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude, 1/s/ft.
-        pub d_turn_factor_d_altitude: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// altitude, 1/s/ft.
-        pub d_gravity_turn_d_altitude: R,
-        /// Derivative of g of the gamma row with respect to altitude, 1/s/ft.
-        pub d_g_gamma_d_altitude: R,
-        /// Derivative of rate of the altitude with respect to gamma, ft/s/rad.
-        pub d_altitude_rate_d_gamma: R,
-        /// Derivative of cos of the flight-path angle with respect to gamma, 1/rad.
-        pub d_cos_gamma_d_gamma: R,
-        /// Derivative of cos of the angle of attack with respect to alpha, 1/rad.
-        pub d_cos_alpha_d_alpha: R,
-        /// `x.chi_1 * c_t_eta_1 + x.chi_2 * c_t_eta_2 + x.chi_3 * c_t_eta_3`.
-        pub sum_of_chi_c_t_eta: R,
+        slope_of_f_pitch_rate_in_dynamic_pressure,
         /// Partial derivative of rate of velocity in the printed form with respect to cos of the angle of attack,
         /// ft/s^2.
-        pub slope_of_velocity_rate_printed_in_cos_alpha: R,
+        slope_of_velocity_rate_printed_in_cos_alpha,
         /// Partial derivative of f of the velocity row with respect to cos of the angle of attack, ft/s^2.
-        pub slope_of_f_velocity_in_cos_alpha: R,
-        /// `i.generalized_force_1_inv_omega_1_2 * c_t_eta_1 + i.generalized_force_2_inv_omega_2_2 * c_t_eta_2 +
-        /// i.generalized_force_3_inv_omega_3_2 * c_t_eta_3`.
-        pub sum_of_generalized_force_inv_omega_2_c_t_eta: R,
+        slope_of_f_velocity_in_cos_alpha,
         /// Partial derivative of f of the velocity row, flexible part with respect to cos of the angle of attack,
         /// ft/s^2.
-        pub slope_of_f_velocity_eta_in_cos_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 1 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_1_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-        pub d_generalized_force_1_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 2 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_2_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-        pub d_generalized_force_2_d_alpha: R,
-        /// Derivative of generalized-force coefficient of mode 3 with respect to alpha, (ft/slug)^0.5/rad.
-        pub d_c_n_3_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha, ft^0.5*slug^0.5/s^2/rad.
-        pub d_generalized_force_3_d_alpha: R,
+        slope_of_f_velocity_eta_in_cos_alpha,
         /// Partial derivative of g of the velocity row with respect to cos of the angle of attack, ft/s^2.
-        pub slope_of_g_velocity_in_cos_alpha: R,
+        slope_of_g_velocity_in_cos_alpha,
         /// Partial derivative of rate of gamma in the printed form with respect to sin of the angle of attack, rad/s.
-        pub slope_of_gamma_rate_printed_in_sin_alpha: R,
+        slope_of_gamma_rate_printed_in_sin_alpha,
         /// Partial derivative of f of the gamma row with respect to sin of the angle of attack, rad/s.
-        pub slope_of_f_gamma_in_sin_alpha: R,
+        slope_of_f_gamma_in_sin_alpha,
         /// Partial derivative of f of the gamma row, flexible part with respect to sin of the angle of attack, rad/s.
-        pub slope_of_f_gamma_eta_in_sin_alpha: R,
-        /// `c_t_alpha + c_t_phi_alpha * u.phi`.
-        pub c_t_alpha_plus_c_t_phi_alpha_phi: R,
+        slope_of_f_gamma_eta_in_sin_alpha,
         /// Partial derivative of g of the gamma row with respect to sin of the angle of attack, 1/s.
-        pub slope_of_g_gamma_in_sin_alpha: R,
-        /// Derivative of g of the gamma row with respect to alpha, 1/s/rad.
-        pub d_g_gamma_d_alpha: R,
+        slope_of_g_gamma_in_sin_alpha,
         /// Partial derivative of rate of alpha in the printed form with respect to sin of the angle of attack, rad/s.
-        pub slope_of_alpha_rate_printed_in_sin_alpha: R,
+        slope_of_alpha_rate_printed_in_sin_alpha,
         /// Partial derivative of f of the alpha row with respect to sin of the angle of attack, rad/s.
-        pub slope_of_f_alpha_in_sin_alpha: R,
+        slope_of_f_alpha_in_sin_alpha,
         /// Partial derivative of f of the alpha row, flexible part with respect to sin of the angle of attack, rad/s.
-        pub slope_of_f_alpha_eta_in_sin_alpha: R,
-        /// Derivative of rate of velocity in the printed form with respect to chi_1, ft^0.5/s^2/slug^0.5.
-        pub d_velocity_rate_printed_d_chi_1: R,
-        /// Derivative of rate of gamma in the printed form with respect to chi_1, rad/s/ft^0.5/slug^0.5.
-        pub d_gamma_rate_printed_d_chi_1: R,
-        /// Derivative of rate of alpha in the printed form with respect to chi_1, rad/s/ft^0.5/slug^0.5.
-        pub d_alpha_rate_printed_d_chi_1: R,
-        /// Derivative of rate of pitch_rate in the printed form with respect to chi_1, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_rate_rate_printed_d_chi_1: R,
-        /// Derivative of rate of velocity in the printed form with respect to chi_2, ft^0.5/s^2/slug^0.5.
-        pub d_velocity_rate_printed_d_chi_2: R,
-        /// Derivative of rate of gamma in the printed form with respect to chi_2, rad/s/ft^0.5/slug^0.5.
-        pub d_gamma_rate_printed_d_chi_2: R,
-        /// Derivative of rate of alpha in the printed form with respect to chi_2, rad/s/ft^0.5/slug^0.5.
-        pub d_alpha_rate_printed_d_chi_2: R,
-        /// Derivative of rate of pitch_rate in the printed form with respect to chi_2, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_rate_rate_printed_d_chi_2: R,
-        /// Derivative of rate of velocity in the printed form with respect to chi_3, ft^0.5/s^2/slug^0.5.
-        pub d_velocity_rate_printed_d_chi_3: R,
-        /// Derivative of rate of gamma in the printed form with respect to chi_3, rad/s/ft^0.5/slug^0.5.
-        pub d_gamma_rate_printed_d_chi_3: R,
-        /// Derivative of rate of alpha in the printed form with respect to chi_3, rad/s/ft^0.5/slug^0.5.
-        pub d_alpha_rate_printed_d_chi_3: R,
-        /// Derivative of rate of pitch_rate in the printed form with respect to chi_3, rad/s^2/ft^0.5/slug^0.5.
-        pub d_pitch_rate_rate_printed_d_chi_3: R,
-        /// Derivative of rate of gamma in the printed form with respect to phi, rad/s.
-        pub d_gamma_rate_printed_d_phi: R,
-        /// Derivative of f of the velocity row with respect to delta_e, ft/s^2/rad.
-        pub d_f_velocity_d_delta_e: R,
-        /// Derivative of f of the gamma row, flexible part with respect to delta_e, 1/s.
-        pub d_f_gamma_eta_d_delta_e: R,
-        /// Derivative of f of the velocity row, flexible part with respect to delta_c, ft/s^2/rad.
-        pub d_f_velocity_eta_d_delta_c: R,
-        /// Derivative of f of the gamma row, flexible part with respect to delta_c, 1/s.
-        pub d_f_gamma_eta_d_delta_c: R,
+        slope_of_f_alpha_eta_in_sin_alpha,
+        d_dynamic_pressure_d_velocity, c_t_alpha_alpha_plus_c_t_0, d_reference_force_d_velocity,
+        d_generalized_force_1_d_velocity, d_generalized_force_2_d_velocity, d_generalized_force_3_d_velocity,
+        c_t_phi_alpha_alpha_plus_c_t_phi, sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi, d_turn_factor_d_velocity,
+        inv_velocity_2, d_gravity_turn_d_velocity, d_g_gamma_d_velocity,
+        sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2,
+        sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi, d_density_d_altitude, d_dynamic_pressure_d_altitude,
+        d_radius_ratio_d_altitude, d_gravity_d_altitude, d_reference_force_d_altitude, d_generalized_force_1_d_altitude,
+        d_generalized_force_2_d_altitude, d_generalized_force_3_d_altitude, d_turn_factor_d_altitude,
+        d_gravity_turn_d_altitude, d_g_gamma_d_altitude, d_altitude_rate_d_gamma, d_cos_gamma_d_gamma,
+        d_cos_alpha_d_alpha, sum_of_chi_c_t_eta, sum_of_generalized_force_inv_omega_2_c_t_eta, d_c_n_1_d_alpha,
+        d_generalized_force_1_d_alpha, d_c_n_2_d_alpha, d_generalized_force_2_d_alpha, d_c_n_3_d_alpha,
+        d_generalized_force_3_d_alpha, c_t_alpha_plus_c_t_phi_alpha_phi, d_g_gamma_d_alpha,
+        d_velocity_rate_printed_d_chi_1, d_gamma_rate_printed_d_chi_1, d_alpha_rate_printed_d_chi_1,
+        d_pitch_rate_rate_printed_d_chi_1, d_velocity_rate_printed_d_chi_2, d_gamma_rate_printed_d_chi_2,
+        d_alpha_rate_printed_d_chi_2, d_pitch_rate_rate_printed_d_chi_2, d_velocity_rate_printed_d_chi_3,
+        d_gamma_rate_printed_d_chi_3, d_alpha_rate_printed_d_chi_3, d_pitch_rate_rate_printed_d_chi_3,
+        d_gamma_rate_printed_d_phi, d_f_velocity_d_delta_e, d_f_gamma_eta_d_delta_e, d_f_velocity_eta_d_delta_c,
+        d_f_gamma_eta_d_delta_c,
     }
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
-fn slopes_part_1<R: Real>(
-    s: &mut Slopes<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) {
+fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to velocity
     s.d_dynamic_pressure_d_velocity = i.density * x.velocity; // lb*s/ft^3
     s.c_t_alpha_alpha_plus_c_t_0 = i.c_t_alpha_alpha + p.c_t_0;
@@ -513,8 +354,8 @@ fn slopes_part_1<R: Real>(
     s.d_generalized_force_2_d_velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     s.d_generalized_force_3_d_velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     s.c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    s.slope_of_g_velocity_in_dynamic_pressure = s.c_t_phi_alpha_alpha_plus_c_t_phi
-        * i.cos_alpha * p.s_over_m; // ft^3/s^2/lb
+    s.slope_of_g_velocity_in_dynamic_pressure = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
+        * p.s_over_m; // ft^3/s^2/lb
     s.d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
     s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
     s.d_gravity_turn_d_velocity = -(i.gravity * s.inv_velocity_2
@@ -525,8 +366,7 @@ fn slopes_part_1<R: Real>(
         * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2; // rad*s/ft^0.5/slug^0.5
     s.slope_of_f_gamma_eta_in_generalized_force_3 = i.turn_factor
         * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2; // rad*s/ft^0.5/slug^0.5
-    s.d_g_gamma_d_velocity = i
-        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+    s.d_g_gamma_d_velocity = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * s.d_turn_factor_d_velocity; // 1/ft
     s.slope_of_alpha_rate_printed_in_turn_factor = -i
         .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi; // rad
@@ -536,12 +376,12 @@ fn slopes_part_1<R: Real>(
                 .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0); // rad
     s.slope_of_f_alpha_eta_in_turn_factor = -i
         .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2; // rad
-    s.slope_of_f_alpha_eta_in_generalized_force_1 = -s
-        .slope_of_f_gamma_eta_in_generalized_force_1; // rad*s/ft^0.5/slug^0.5
-    s.slope_of_f_alpha_eta_in_generalized_force_2 = -s
-        .slope_of_f_gamma_eta_in_generalized_force_2; // rad*s/ft^0.5/slug^0.5
-    s.slope_of_f_alpha_eta_in_generalized_force_3 = -s
-        .slope_of_f_gamma_eta_in_generalized_force_3; // rad*s/ft^0.5/slug^0.5
+    // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_alpha_eta_in_generalized_force_1 = -s.slope_of_f_gamma_eta_in_generalized_force_1;
+    // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_alpha_eta_in_generalized_force_2 = -s.slope_of_f_gamma_eta_in_generalized_force_2;
+    // rad*s/ft^0.5/slug^0.5
+    s.slope_of_f_alpha_eta_in_generalized_force_3 = -s.slope_of_f_gamma_eta_in_generalized_force_3;
     s.slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
         * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
         + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
@@ -560,8 +400,7 @@ fn slopes_part_1<R: Real>(
     s.d_turn_factor_d_altitude = p.half_s_over_m * x.velocity * s.d_density_d_altitude; // 1/s/ft
     s.d_gravity_turn_d_altitude = s.d_gravity_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * s.d_radius_ratio_d_altitude; // 1/s/ft
-    s.d_g_gamma_d_altitude = i
-        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+    s.d_g_gamma_d_altitude = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * s.d_turn_factor_d_altitude; // 1/s/ft
 
     // Derivatives with respect to gamma
@@ -570,13 +409,10 @@ fn slopes_part_1<R: Real>(
 
     // Derivatives with respect to alpha
     s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
-    s.sum_of_chi_c_t_eta = x.chi_1 * p.c_t_eta_1
-        + x.chi_2 * p.c_t_eta_2
-        + x.chi_3 * p.c_t_eta_3;
+    s.sum_of_chi_c_t_eta = x.chi_1 * p.c_t_eta_1 + x.chi_2 * p.c_t_eta_2 + x.chi_3 * p.c_t_eta_3;
     s.slope_of_velocity_rate_printed_in_cos_alpha = i.reference_force * p.inv_m
         * s.sum_of_chi_c_t_eta; // ft/s^2
-    s.slope_of_f_velocity_in_cos_alpha = i.reference_force * p.inv_m
-        * s.c_t_alpha_alpha_plus_c_t_0; // ft/s^2
+    s.slope_of_f_velocity_in_cos_alpha = i.reference_force * p.inv_m * s.c_t_alpha_alpha_plus_c_t_0; // ft/s^2
     s.sum_of_generalized_force_inv_omega_2_c_t_eta = i.generalized_force_1_inv_omega_1_2 * p.c_t_eta_1
         + i.generalized_force_2_inv_omega_2_2 * p.c_t_eta_2
         + i.generalized_force_3_inv_omega_3_2 * p.c_t_eta_3;
@@ -592,16 +428,10 @@ fn slopes_part_1<R: Real>(
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
-fn slopes_part_2<R: Real>(
-    s: &mut Slopes<R>,
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) {
+fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to alpha
-    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi
-        * i.reference_force * p.inv_m; // ft/s^2
+    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.reference_force
+        * p.inv_m; // ft/s^2
     s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor * s.sum_of_chi_c_t_eta; // rad/s
     s.slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.c_t_phi_phi + p.c_t_0); // rad/s
     s.slope_of_f_gamma_eta_in_sin_alpha = i.turn_factor
@@ -609,8 +439,7 @@ fn slopes_part_2<R: Real>(
     s.c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
     s.slope_of_g_gamma_in_sin_alpha = i.turn_factor * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/s
     s.d_g_gamma_d_alpha = s.slope_of_g_gamma_in_sin_alpha * i.cos_alpha; // 1/s/rad
-    s.slope_of_alpha_rate_printed_in_sin_alpha = -s
-        .slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
+    s.slope_of_alpha_rate_printed_in_sin_alpha = -s.slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
     s.slope_of_f_alpha_in_sin_alpha = -i.turn_factor
         * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0; // rad/s
     s.slope_of_f_alpha_eta_in_sin_alpha = -s.slope_of_f_gamma_eta_in_sin_alpha; // rad/s
@@ -618,8 +447,7 @@ fn slopes_part_2<R: Real>(
     // Derivatives with respect to chi_1
     s.d_velocity_rate_printed_d_chi_1 = i.reference_force * p.inv_m
         * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1; // ft^0.5/s^2/slug^0.5
-    s.d_gamma_rate_printed_d_chi_1 = i.turn_factor
-        * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
+    s.d_gamma_rate_printed_d_chi_1 = i.turn_factor * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/s/ft^0.5/slug^0.5
     s.d_alpha_rate_printed_d_chi_1 = -s.d_gamma_rate_printed_d_chi_1; // rad/s/ft^0.5/slug^0.5
     s.d_pitch_rate_rate_printed_d_chi_1 = i.reference_force
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -627,8 +455,7 @@ fn slopes_part_2<R: Real>(
     // Derivatives with respect to chi_2
     s.d_velocity_rate_printed_d_chi_2 = i.reference_force * p.inv_m
         * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2; // ft^0.5/s^2/slug^0.5
-    s.d_gamma_rate_printed_d_chi_2 = i.turn_factor
-        * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
+    s.d_gamma_rate_printed_d_chi_2 = i.turn_factor * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/s/ft^0.5/slug^0.5
     s.d_alpha_rate_printed_d_chi_2 = -s.d_gamma_rate_printed_d_chi_2; // rad/s/ft^0.5/slug^0.5
     s.d_pitch_rate_rate_printed_d_chi_2 = i.reference_force
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -636,8 +463,7 @@ fn slopes_part_2<R: Real>(
     // Derivatives with respect to chi_3
     s.d_velocity_rate_printed_d_chi_3 = i.reference_force * p.inv_m
         * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3; // ft^0.5/s^2/slug^0.5
-    s.d_gamma_rate_printed_d_chi_3 = i.turn_factor
-        * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
+    s.d_gamma_rate_printed_d_chi_3 = i.turn_factor * i.sin_alpha_c_t_eta_3_plus_c_l_eta_3; // rad/s/ft^0.5/slug^0.5
     s.d_alpha_rate_printed_d_chi_3 = -s.d_gamma_rate_printed_d_chi_3; // rad/s/ft^0.5/slug^0.5
     s.d_pitch_rate_rate_printed_d_chi_3 = i.reference_force
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
@@ -657,22 +483,21 @@ fn slopes_part_2<R: Real>(
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // ft/s^2/rad
     s.d_f_velocity_d_delta_e = d_f_velocity_eta_d_delta_e
         - i.reference_force * p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain_inv_m; // ft/s^2/rad
-    s.d_f_gamma_eta_d_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
+    s.d_f_gamma_eta_d_delta_e =
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
 
     // Derivatives with respect to delta_c
-    let d_generalized_force_1_d_delta_c = i.reference_force
-        * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_2_d_delta_c = i.reference_force
-        * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    let d_generalized_force_3_d_delta_c = i.reference_force
-        * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    let d_generalized_force_3_d_delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     s.d_f_velocity_eta_d_delta_c =
         s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
         + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
         + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // ft/s^2/rad
-    s.d_f_gamma_eta_d_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
+    s.d_f_gamma_eta_d_delta_c =
+        s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_c
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_c
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_c; // 1/s
 
@@ -691,12 +516,7 @@ fn slopes_part_2<R: Real>(
 
 /// Computes [`Slopes`].
 #[inline(always)]
-pub fn slopes<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-) -> Slopes<R> {
+pub fn slopes<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Slopes<R> {
     let mut s = Slopes::splat(R::ZERO);
     slopes_part_1(&mut s, x, u, p, i);
     slopes_part_2(&mut s, x, u, p, i);
@@ -704,132 +524,40 @@ pub fn slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the second derivatives that other functions, or several parts of these, need.
+    /// Quantities of the second derivatives that other functions, or several parts of these, need. A field
+    /// without a description is what its name says: its formula and unit stand in [`curvatures`].
     pub struct Curvatures<R> {
-        /// Derivative of partial derivative of f of the velocity row, flexible part with respect to dynamic pressure
-        /// with respect to velocity, ft^2/s/lb.
-        pub d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity: R,
-        /// Derivative of dynamic pressure with respect to velocity and altitude, lb*s/ft^4.
-        pub d2_dynamic_pressure_d_velocity_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to velocity and altitude, lb*s/ft^3.
-        pub d2_reference_force_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
-        pub d2_generalized_force_1_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
-        pub d2_generalized_force_2_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and altitude, slug^0.5/ft^1.5/s.
-        pub d2_generalized_force_3_d_velocity_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_1_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_2_d_velocity_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to velocity and alpha, slug^0.5/ft^0.5/s/rad.
-        pub d2_generalized_force_3_d_velocity_d_alpha: R,
-        /// `i.density_ratio * inv_h_s`.
-        pub density_ratio_over_h_s: R,
-        /// Derivative of dynamic pressure with respect to altitude and altitude, lb/ft^4.
-        pub d2_dynamic_pressure_d_altitude_d_altitude: R,
-        /// Derivative of acceleration of gravity at altitude with respect to altitude and altitude, 1/s^2/ft.
-        pub d2_gravity_d_altitude_d_altitude: R,
-        /// Derivative of dynamic pressure times reference area with respect to altitude and altitude, lb/ft^3.
-        pub d2_reference_force_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
-        pub d2_generalized_force_1_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
-        pub d2_generalized_force_2_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and altitude, slug^0.5/ft^1.5/s^2.
-        pub d2_generalized_force_3_d_altitude_d_altitude: R,
-        /// Derivative of generalized force of mode 1 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_1_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_2_d_altitude_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to altitude and alpha, slug^0.5/ft^0.5/s^2/rad.
-        pub d2_generalized_force_3_d_altitude_d_alpha: R,
-        /// `c_t_eta_1_inv_omega_1_2 * s.d_generalized_force_1_d_alpha + c_t_eta_2_inv_omega_2_2 *
-        /// s.d_generalized_force_2_d_alpha + c_t_eta_3_inv_omega_3_2 * s.d_generalized_force_3_d_alpha`.
-        pub sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha: R,
-        /// Derivative of generalized force of mode 1 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_1_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 2 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_2_d_alpha_d_alpha: R,
-        /// Derivative of generalized force of mode 3 with respect to alpha and alpha, ft^0.5*slug^0.5/s^2/rad^2.
-        pub d2_generalized_force_3_d_alpha_d_alpha: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to velocity and
-        /// altitude, 1/ft^2.
-        pub d2_turn_factor_d_velocity_d_altitude: R,
-        /// Derivative of partial derivative of f of the gamma row, flexible part with respect to turn rate per force
-        /// coefficient across the flight path with respect to altitude, rad/ft.
-        pub d_slope_of_f_gamma_eta_in_turn_factor_d_altitude: R,
-        /// `i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude`.
-        pub cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude: R,
-        /// Derivative of partial derivative of rate of gamma in the printed form with respect to turn rate per force
-        /// coefficient across the flight path with respect to alpha, dimensionless.
-        pub d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha: R,
-        /// Derivative of partial derivative of f of the gamma row, flexible part with respect to turn rate per force
-        /// coefficient across the flight path with respect to alpha, dimensionless.
-        pub d_slope_of_f_gamma_eta_in_turn_factor_d_alpha: R,
-        /// Derivative of partial derivative of g of the gamma row with respect to turn rate per force coefficient
-        /// across the flight path with respect to alpha, 1/rad.
-        pub d_slope_of_g_gamma_in_turn_factor_d_alpha: R,
-        /// Derivative of rate of gamma in the printed form with respect to velocity and chi_1, rad/ft^1.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_velocity_d_chi_1: R,
-        /// Derivative of rate of gamma in the printed form with respect to velocity and chi_2, rad/ft^1.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_velocity_d_chi_2: R,
-        /// Derivative of rate of gamma in the printed form with respect to velocity and chi_3, rad/ft^1.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_velocity_d_chi_3: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to altitude and
-        /// altitude, 1/s/ft^2.
-        pub d2_turn_factor_d_altitude_d_altitude: R,
-        /// `i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude`.
-        pub cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude: R,
-        /// Derivative of rate of gamma in the printed form with respect to altitude and chi_1, rad/s/ft^1.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_altitude_d_chi_1: R,
-        /// Derivative of rate of gamma in the printed form with respect to altitude and chi_2, rad/s/ft^1.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_altitude_d_chi_2: R,
-        /// Derivative of rate of gamma in the printed form with respect to altitude and chi_3, rad/s/ft^1.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_altitude_d_chi_3: R,
-        /// Derivative of partial derivative of f of the gamma row, flexible part with respect to sin of the angle of
-        /// attack with respect to alpha, 1/s.
-        pub d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha: R,
-        /// Derivative of rate of gamma in the printed form with respect to alpha and chi_1, 1/s/ft^0.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_alpha_d_chi_1: R,
-        /// Derivative of rate of gamma in the printed form with respect to alpha and chi_2, 1/s/ft^0.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_alpha_d_chi_2: R,
-        /// Derivative of rate of gamma in the printed form with respect to alpha and chi_3, 1/s/ft^0.5/slug^0.5.
-        pub d2_gamma_rate_printed_d_alpha_d_chi_3: R,
-        /// `i.cos_alpha * h.d_slope_of_f_alpha_in_sin_alpha_d_alpha`.
-        pub cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha: R,
-        /// Derivative of air density over its reference with respect to altitude and altitude, 1/ft^2.
-        pub d2_density_ratio_d_altitude_d_altitude: R,
-        /// Derivative of air density with respect to altitude and altitude, slug/ft^5.
-        pub d2_density_d_altitude_d_altitude: R,
-        /// `i.radius_ratio * i.radius_ratio_2`.
-        pub radius_ratio_3: R,
-        /// Derivative of radius of the Earth over the distance to its centre with respect to altitude and altitude,
-        /// 1/ft^2.
-        pub d2_radius_ratio_d_altitude_d_altitude: R,
-        /// `s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude`.
-        pub power_2_of_d_radius_ratio_d_altitude: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// velocity and altitude, 1/ft^2.
-        pub d2_gravity_turn_d_velocity_d_altitude: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// altitude and altitude, 1/s/ft^2.
-        pub d2_gravity_turn_d_altitude_d_altitude: R,
-        /// Derivative of partial derivative of f of the alpha row with respect to sin of the angle of attack with
-        /// respect to alpha, 1/s.
-        pub d_slope_of_f_alpha_in_sin_alpha_d_alpha: R,
+        d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity, d2_dynamic_pressure_d_velocity_d_altitude,
+        d2_reference_force_d_velocity_d_altitude, d2_generalized_force_1_d_velocity_d_altitude,
+        d2_generalized_force_2_d_velocity_d_altitude, d2_generalized_force_3_d_velocity_d_altitude,
+        d2_generalized_force_1_d_velocity_d_alpha, d2_generalized_force_2_d_velocity_d_alpha,
+        d2_generalized_force_3_d_velocity_d_alpha, density_ratio_over_h_s, d2_dynamic_pressure_d_altitude_d_altitude,
+        d2_gravity_d_altitude_d_altitude, d2_reference_force_d_altitude_d_altitude,
+        d2_generalized_force_1_d_altitude_d_altitude, d2_generalized_force_2_d_altitude_d_altitude,
+        d2_generalized_force_3_d_altitude_d_altitude, d2_generalized_force_1_d_altitude_d_alpha,
+        d2_generalized_force_2_d_altitude_d_alpha, d2_generalized_force_3_d_altitude_d_alpha,
+        sum_of_c_t_eta_inv_omega_2_times_d_generalized_force_d_alpha, d2_generalized_force_1_d_alpha_d_alpha,
+        d2_generalized_force_2_d_alpha_d_alpha, d2_generalized_force_3_d_alpha_d_alpha,
+        d2_turn_factor_d_velocity_d_altitude, d_slope_of_f_gamma_eta_in_turn_factor_d_altitude,
+        cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude, d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha,
+        d_slope_of_f_gamma_eta_in_turn_factor_d_alpha, d_slope_of_g_gamma_in_turn_factor_d_alpha,
+        d2_gamma_rate_printed_d_velocity_d_chi_1, d2_gamma_rate_printed_d_velocity_d_chi_2,
+        d2_gamma_rate_printed_d_velocity_d_chi_3, d2_turn_factor_d_altitude_d_altitude,
+        cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude, d2_gamma_rate_printed_d_altitude_d_chi_1,
+        d2_gamma_rate_printed_d_altitude_d_chi_2, d2_gamma_rate_printed_d_altitude_d_chi_3,
+        d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha, d2_gamma_rate_printed_d_alpha_d_chi_1,
+        d2_gamma_rate_printed_d_alpha_d_chi_2, d2_gamma_rate_printed_d_alpha_d_chi_3,
+        cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha, d2_density_ratio_d_altitude_d_altitude,
+        d2_density_d_altitude_d_altitude, radius_ratio_3, d2_radius_ratio_d_altitude_d_altitude,
+        power_2_of_d_radius_ratio_d_altitude, d2_gravity_turn_d_velocity_d_altitude,
+        d2_gravity_turn_d_altitude_d_altitude, d_slope_of_f_alpha_in_sin_alpha_d_alpha,
     }
 }
 
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
 fn curvatures_part_1<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to velocity
     h.d_slope_of_f_velocity_eta_in_dynamic_pressure_d_velocity = p.s_over_m
@@ -842,8 +570,7 @@ fn curvatures_part_1<R: Real>(
 
     // Derivatives with respect to altitude
     h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    h.d2_reference_force_d_velocity_d_altitude = p.s
-        * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    h.d2_reference_force_d_velocity_d_altitude = p.s * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     h.d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     h.d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
@@ -862,19 +589,16 @@ fn curvatures_part_1<R: Real>(
     // Derivatives with respect to altitude
     h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    h.d2_density_d_altitude_d_altitude = p.rho_0
-        * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    h.d2_density_d_altitude_d_altitude = p.rho_0 * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * h.d2_density_d_altitude_d_altitude; // lb/ft^4
     h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
     h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
-    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude
-        * s.d_radius_ratio_d_altitude;
+    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
     h.d2_gravity_d_altitude_d_altitude = p.g
         * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
-    h.d2_reference_force_d_altitude_d_altitude = p.s
-        * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    h.d2_reference_force_d_altitude_d_altitude = p.s * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
     h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
@@ -906,21 +630,15 @@ fn curvatures_part_1<R: Real>(
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
 fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>,
-    x: &State<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to alpha
-    h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta
-        * i.cos_alpha;
+    h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta * i.cos_alpha;
     h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
         + i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_alpha
         + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_alpha
         + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_alpha;
-    h.d_slope_of_g_gamma_in_turn_factor_d_alpha = i.cos_alpha
-        * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
+    h.d_slope_of_g_gamma_in_turn_factor_d_alpha = i.cos_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi; // 1/rad
 
     // Derivatives with respect to chi_1
     h.d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
@@ -937,8 +655,7 @@ fn curvatures_part_2<R: Real>(
     // Derivatives with respect to altitude
     h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude
-        * i.inv_velocity
+    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
 
     // Derivatives with respect to chi_1
@@ -974,22 +691,15 @@ fn curvatures_part_2<R: Real>(
     h.d_slope_of_f_alpha_in_sin_alpha_d_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
 
     // Further values
-    h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = i.cos_gamma
-        * h.d2_gravity_turn_d_velocity_d_altitude;
-    h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma
-        * h.d2_gravity_turn_d_altitude_d_altitude;
-    h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha
-        * h.d_slope_of_f_alpha_in_sin_alpha_d_alpha;
+    h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude;
+    h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude;
+    h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha * h.d_slope_of_f_alpha_in_sin_alpha_d_alpha;
 }
 
 /// Computes [`Curvatures`].
 #[inline(always)]
 pub fn curvatures<R: Real>(
-    x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
+    x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) -> Curvatures<R> {
     let mut h = Curvatures::splat(R::ZERO);
     curvatures_part_1(&mut h, x, p, i, s);
@@ -998,40 +708,28 @@ pub fn curvatures<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the noise's derivatives that other functions, or several parts of these, need.
+    /// Quantities of the noise's derivatives that other functions, or several parts of these, need. A field
+    /// without a description is what its name says: its formula and unit stand in [`noise_slopes`].
     pub struct NoiseSlopes<R> {
         /// H of the velocity row, ft/s^2/rad.
-        pub alpha_slope_velocity: R,
+        alpha_slope_velocity,
         /// H of the alpha row, 1/s.
-        pub alpha_slope_alpha: R,
-        /// Derivative of H of the velocity row with respect to velocity, 1/s/rad.
-        pub d_alpha_slope_velocity_d_velocity: R,
-        /// Derivative of H of the velocity row with respect to alpha, ft/s^2/rad^2.
-        pub d_alpha_slope_velocity_d_alpha: R,
-        /// Derivative of H of the alpha row with respect to velocity, 1/ft.
-        pub d_alpha_slope_alpha_d_velocity: R,
-        /// `c_bar_c_m_alpha + z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi`.
-        pub c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t: R,
-        /// Derivative of H of the pitch_rate row with respect to velocity, 1/s/ft.
-        pub d_alpha_slope_pitch_rate_d_velocity: R,
+        alpha_slope_alpha,
+        d_alpha_slope_velocity_d_velocity, d_alpha_slope_velocity_d_alpha, d_alpha_slope_alpha_d_velocity,
+        c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t, d_alpha_slope_pitch_rate_d_velocity,
     }
 }
 
 /// Computes [`NoiseSlopes`].
 #[inline(always)]
 pub fn noise_slopes<R: Real>(
-    _x: &State<R>,
-    _u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) -> NoiseSlopes<R> {
     let mut m = NoiseSlopes::splat(R::ZERO);
 
     // Strict-feedback form, (28)
-    let d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha = h
-        .d_slope_of_g_gamma_in_turn_factor_d_alpha - p.c_d_alpha;
+    let d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha = h.d_slope_of_g_gamma_in_turn_factor_d_alpha
+        - p.c_d_alpha;
     m.alpha_slope_velocity = i.reference_force * p.inv_m
         * d_slope_of_g_gamma_in_turn_factor_d_alpha_minus_c_d_alpha; // ft/s^2/rad
     m.alpha_slope_alpha = -i.g_gamma; // 1/s
@@ -1047,8 +745,7 @@ pub fn noise_slopes<R: Real>(
         * s.d_cos_alpha_d_alpha; // ft/s^2/rad^2
 
     // Derivatives with respect to altitude
-    let slope_of_alpha_slope_alpha_in_turn_factor = -i
-        .c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
+    let slope_of_alpha_slope_alpha_in_turn_factor = -i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha;
 
     // Derivatives with respect to velocity
     m.d_alpha_slope_alpha_d_velocity = slope_of_alpha_slope_alpha_in_turn_factor
@@ -1062,70 +759,28 @@ pub fn noise_slopes<R: Real>(
 }
 
 ahv_core::record! {
-    /// Quantities of the derivatives with respect to parameters that several parts of these need.
+    /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
+    /// a description is what its name says: its formula and unit stand in [`sensitivities`].
     pub struct Sensitivities<R> {
-        /// Derivative of dynamic pressure with respect to h_0, lb/ft^3.
-        pub d_dynamic_pressure_d_h_0: R,
-        /// Derivative of dynamic pressure times reference area with respect to h_0, lb/ft^2.
-        pub d_reference_force_d_h_0: R,
-        /// Derivative of generalized force of mode 1 with respect to h_0, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_1_d_h_0: R,
-        /// Derivative of generalized force of mode 2 with respect to h_0, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_2_d_h_0: R,
-        /// Derivative of generalized force of mode 3 with respect to h_0, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_3_d_h_0: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to h_0, 1/s/ft.
-        pub d_turn_factor_d_h_0: R,
-        /// Derivative of dynamic pressure with respect to h_s, lb/ft^3.
-        pub d_dynamic_pressure_d_h_s: R,
-        /// Derivative of dynamic pressure times reference area with respect to h_s, lb/ft^2.
-        pub d_reference_force_d_h_s: R,
-        /// Derivative of generalized force of mode 1 with respect to h_s, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_1_d_h_s: R,
-        /// Derivative of generalized force of mode 2 with respect to h_s, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_2_d_h_s: R,
-        /// Derivative of generalized force of mode 3 with respect to h_s, slug^0.5/ft^0.5/s^2.
-        pub d_generalized_force_3_d_h_s: R,
-        /// Derivative of turn rate per force coefficient across the flight path with respect to h_s, 1/s/ft.
-        pub d_turn_factor_d_h_s: R,
         /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
         /// Earth, 0 where it is flat, ft.
-        pub slope_of_radius_ratio_in_earth_curvature: R,
-        /// `two_g * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity`.
-        pub two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity: R,
-        /// Derivative of turn rate of a level path by gravity, less that of the Earth's curvature with respect to
-        /// r_e, 1/s/ft.
-        pub d_gravity_turn_d_r_e: R,
-        /// `s.d_velocity_rate_printed_d_chi_1 * inv_omega_1_2_c_n_1_delta_c * u.delta_e +
-        /// s.d_velocity_rate_printed_d_chi_2 * inv_omega_2_2_c_n_2_delta_c * u.delta_e +
-        /// s.d_velocity_rate_printed_d_chi_3 * inv_omega_3_2_c_n_3_delta_c * u.delta_e`.
-        pub sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e: R,
-        /// `s.slope_of_f_gamma_eta_in_generalized_force_1 * c_n_1_delta_c * u.delta_e +
-        /// s.slope_of_f_gamma_eta_in_generalized_force_2 * c_n_2_delta_c * u.delta_e +
-        /// s.slope_of_f_gamma_eta_in_generalized_force_3 * c_n_3_delta_c * u.delta_e`.
-        pub sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e: R,
-        /// `s.slope_of_f_alpha_eta_in_generalized_force_1 * c_n_1_delta_c * u.delta_e +
-        /// s.slope_of_f_alpha_eta_in_generalized_force_2 * c_n_2_delta_c * u.delta_e +
-        /// s.slope_of_f_alpha_eta_in_generalized_force_3 * c_n_3_delta_c * u.delta_e`.
-        pub sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e: R,
-        /// `i.generalized_force_1_inv_omega_1_2 + x.chi_1`.
-        pub generalized_force_1_inv_omega_1_2_plus_chi_1: R,
-        /// `i.generalized_force_2_inv_omega_2_2 + x.chi_2`.
-        pub generalized_force_2_inv_omega_2_2_plus_chi_2: R,
-        /// `i.generalized_force_3_inv_omega_3_2 + x.chi_3`.
-        pub generalized_force_3_inv_omega_3_2_plus_chi_3: R,
+        slope_of_radius_ratio_in_earth_curvature,
+        d_dynamic_pressure_d_h_0, d_reference_force_d_h_0, d_generalized_force_1_d_h_0, d_generalized_force_2_d_h_0,
+        d_generalized_force_3_d_h_0, d_turn_factor_d_h_0, d_dynamic_pressure_d_h_s, d_reference_force_d_h_s,
+        d_generalized_force_1_d_h_s, d_generalized_force_2_d_h_s, d_generalized_force_3_d_h_s, d_turn_factor_d_h_s,
+        two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity, d_gravity_turn_d_r_e,
+        sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e,
+        sum_of_slope_of_f_gamma_eta_in_generalized_force_c_n_delta_c_delta_e,
+        sum_of_slope_of_f_alpha_eta_in_generalized_force_c_n_delta_c_delta_e,
+        generalized_force_1_inv_omega_1_2_plus_chi_1, generalized_force_2_inv_omega_2_2_plus_chi_2,
+        generalized_force_3_inv_omega_3_2_plus_chi_3,
     }
 }
 
 /// Computes [`Sensitivities`].
 #[inline(always)]
 pub fn sensitivities<R: Real>(
-    x: &State<R>,
-    u: &Input<R>,
-    p: &Prepared<R>,
-    i: &Intermediates<R>,
-    s: &Slopes<R>,
-    h: &Curvatures<R>,
+    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
 
@@ -1168,11 +823,8 @@ pub fn sensitivities<R: Real>(
         s.slope_of_f_alpha_eta_in_generalized_force_1 * p.c_n_1_delta_c * u.delta_e
         + s.slope_of_f_alpha_eta_in_generalized_force_2 * p.c_n_2_delta_c * u.delta_e
         + s.slope_of_f_alpha_eta_in_generalized_force_3 * p.c_n_3_delta_c * u.delta_e;
-    q.generalized_force_1_inv_omega_1_2_plus_chi_1 = i.generalized_force_1_inv_omega_1_2
-        + x.chi_1;
-    q.generalized_force_2_inv_omega_2_2_plus_chi_2 = i.generalized_force_2_inv_omega_2_2
-        + x.chi_2;
-    q.generalized_force_3_inv_omega_3_2_plus_chi_3 = i.generalized_force_3_inv_omega_3_2
-        + x.chi_3;
+    q.generalized_force_1_inv_omega_1_2_plus_chi_1 = i.generalized_force_1_inv_omega_1_2 + x.chi_1;
+    q.generalized_force_2_inv_omega_2_2_plus_chi_2 = i.generalized_force_2_inv_omega_2_2 + x.chi_2;
+    q.generalized_force_3_inv_omega_3_2_plus_chi_3 = i.generalized_force_3_inv_omega_3_2 + x.chi_3;
     q
 }

@@ -11,8 +11,7 @@ use ahv_core::Real;
 /// 75 operations: 26 additions, 45 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_velocity
+    intermediates(x, u, p).f_velocity
 }
 
 /// Coefficient of phi (1) in the velocity rate, eq. (28). Unit: ft/s^2.
@@ -20,8 +19,7 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 14 operations: 2 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.g_velocity
+    intermediates(x, u, p).g_velocity
 }
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
@@ -56,8 +54,7 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 56 operations: 19 additions, 35 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_velocity_eta
+    intermediates(x, u, p).f_velocity_eta
 }
 
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
@@ -65,8 +62,7 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 76 operations: 25 additions, 46 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_gamma
+    intermediates(x, u, p).f_gamma
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
@@ -74,8 +70,7 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.g_gamma
+    intermediates(x, u, p).g_gamma
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
@@ -97,8 +92,7 @@ pub fn h_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 /// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.g_gamma
+    intermediates(x, u, p).g_gamma
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
@@ -106,8 +100,7 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_gamma_eta
+    intermediates(x, u, p).f_gamma_eta
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
@@ -115,8 +108,7 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 83 operations: 28 additions, 50 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_alpha
+    intermediates(x, u, p).f_alpha
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
@@ -158,8 +150,7 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_alpha_eta
+    intermediates(x, u, p).f_alpha_eta
 }
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
@@ -167,8 +158,7 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 66 operations: 23 additions, 42 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_pitch_rate
+    intermediates(x, u, p).f_pitch_rate
 }
 
 /// Coefficient of delta_e (rad) in the pitch_rate rate, eq. (34). Unit: 1/s^2.
@@ -176,8 +166,7 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 9 operations: 1 addition, 7 multiplications, 1 exp.
 #[inline(always)]
 pub fn g_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.g_pitch_rate
+    intermediates(x, u, p).g_pitch_rate
 }
 
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
@@ -204,8 +193,6 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
     let m = noise_slopes(x, u, p, &i, &s, &h);
-
-    // Strict-feedback form, (34)
     i.reference_force * p.inv_i_yy
         * m.c_bar_c_m_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_z_t
 }
@@ -215,6 +202,5 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 /// 49 operations: 16 additions, 32 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
-    let i = intermediates(x, u, p);
-    i.f_pitch_rate_eta
+    intermediates(x, u, p).f_pitch_rate_eta
 }

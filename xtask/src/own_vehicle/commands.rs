@@ -25,13 +25,13 @@ pub(super) const TWO_MODES: &[Question] = &[
         "trim --model dcom",
         &[
             "/converged = true",
-            "/set = \"own\"",
+            "/set = \"nominal\"",
             "#/eta = 2",
             "#/state = 9",
         ],
     ),
     (
-        "trim --model dcom --table tables-of-own-models/own.toml --set heavy",
+        "trim --model dcom --table tables-of-own-models/two_mode.toml --set heavy",
         &["/converged = true", "/set = \"heavy\""],
     ),
     (
@@ -96,9 +96,20 @@ pub(super) const TWO_MODES: &[Question] = &[
     ),
 ];
 
-/// One model of a family.
-pub(super) const DCOM_ALONE: &[Question] =
-    &[("trim --model dcom", &["/converged = true", "#/eta = 3"])];
+/// One model of a family, with a mode more than the table of the built-in family has.
+pub(super) const FOUR_MODE: &[Question] = &[(
+    "trim --model dcom",
+    &["/converged = true", "#/eta = 4", "/in_validity_box = true"],
+)];
+
+/// Equations of a built-in family in a family of its own.
+pub(super) const PARKER_CANARD: &[Question] = &[
+    (
+        "trim --input delta_c=2deg",
+        &["/converged = true", "/in_validity_box = true"],
+    ),
+    ("poles --inputs phi,delta_e,delta_c", &["#/inputs = 3"]),
+];
 
 /// One model of a family, without flexible modes and without noise.
 pub(super) const COM_RIGID_ALONE: &[Question] = &[
@@ -176,7 +187,7 @@ pub(super) const TANK: &[Question] = &[
 /// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
 pub(super) const WINGED_CONE: &[Question] = &[
     (
-        "trim --velocity 15060 --altitude 110000",
+        "trim --model winged_cone --velocity 15060 --altitude 110000",
         &[
             "/converged = true",
             "/state/alpha ~ 0.031227",
@@ -185,6 +196,19 @@ pub(super) const WINGED_CONE: &[Question] = &[
         ],
     ),
     ("poles", &["#/poles = 7"]),
+];
+
+/// As computed. Published, coarsely rounded: alpha 0.0315 rad, throttle 0.183, elevator -0.0066 rad.
+pub(super) const WANG_STENGEL: &[Question] = &[
+    (
+        "trim --model wang_stengel --velocity 15060 --altitude 110000",
+        &[
+            "/converged = true",
+            "/state/alpha ~ 0.031225",
+            "/input/beta_command ~ 0.17619",
+            "/input/delta_e ~ -0.0069465",
+        ],
+    ),
     (
         "montecarlo --members 1000 --t-end 1 --dt 0.01 --disperse",
         &["/members = 1000", "/lost = 0", "#/mean = 7"],
@@ -253,15 +277,19 @@ impl Own {
     pub(super) fn answers(&self, questions: &[Question]) -> Result<(), String> {
         for (line, facts) in questions {
             println!("  {line}");
-            let answer = self.ask(&format!("{line} --json"))?;
-            let json: Value = serde_json::from_str(&answer)
-                .map_err(|error| format!("error: {line}: {error}\n{answer}"))?;
+            let json = self.json(line)?;
             for fact in *facts {
                 holds(&json, fact)
                     .map_err(|found| format!("error: {line}: not {fact}, but {found}"))?;
             }
         }
         Ok(())
+    }
+
+    /// What a command answers with `--json`.
+    pub(super) fn json(&self, line: &str) -> Result<Value, String> {
+        let answer = self.ask(&format!("{line} --json"))?;
+        serde_json::from_str(&answer).map_err(|error| format!("error: {line}: {error}\n{answer}"))
     }
 
     /// Holds a command to being refused with this message.

@@ -1,40 +1,6 @@
-//! Tables that a stranger might write, made from those of this repository.
+//! A table that a stranger might write, made from one of this repository.
 
 use toml_edit::{Array, DocumentMut, Item, TableLike, value};
-
-/// Flexible modes that are left.
-const MODES: usize = 2;
-const HEAVY: &str = r#"
-[sets."heavy".vehicle]
-m = { value = 360.0, unit = "slug/ft" }
-I_yy = { value = 6.0e5, unit = "slug*ft" }
-"#;
-
-/// The DCOM's table with two of its three modes, and a set of its own.
-pub(super) fn two_modes(dcom: &str) -> Result<String, String> {
-    let mut table = read(dcom)?;
-    rename(&mut table, "own", &["dcom", "sdcom"])?;
-    without_gust(&mut table)?;
-    table.remove("sets");
-    table.remove(&format!("C_N_{}", MODES + 1));
-    let third = format!("_{}", MODES + 1);
-    for section in ["modes", "noise", "C_T", "C_L", "C_D", "C_M"] {
-        let section = inside(&mut table, section)?;
-        let names: Vec<String> = section.iter().map(|(name, _)| name.to_owned()).collect();
-        for name in names.iter().filter(|name| name.ends_with(&third)) {
-            section.remove(name);
-        }
-    }
-    Ok(table.to_string() + HEAVY)
-}
-
-/// The DCOM's table with `dcom` alone.
-pub(super) fn dcom_alone(dcom: &str) -> Result<String, String> {
-    let mut table = read(dcom)?;
-    rename(&mut table, "alone", &["dcom"])?;
-    without_gust(&mut table)?;
-    Ok(table.to_string())
-}
 
 /// The COM's table with its rigid model alone.
 pub(super) fn com_rigid_alone(com: &str) -> Result<String, String> {
@@ -55,7 +21,9 @@ pub(super) fn com_rigid_alone(com: &str) -> Result<String, String> {
 /// A table with the parts that a page joins in its block of TOML: `models` of the header, entries of `[validity]`, and
 /// sections of their own.
 pub(super) fn joined(table: &str, page: &str) -> Result<String, String> {
-    let block = page.split_once("```toml\n").and_then(|(_, it)| it.split_once("```"));
+    let block = page
+        .split_once("```toml\n")
+        .and_then(|(_, it)| it.split_once("```"));
     let (block, _) = block.ok_or("error: the page has no block of TOML")?;
     let (mut table, block) = (read(table)?, read(block)?);
     for (name, item) in block.iter() {
@@ -89,14 +57,5 @@ fn rename(table: &mut DocumentMut, name: &str, models: &[&str]) -> Result<(), St
     head.insert("name", value(name));
     head.insert("models", value(models.iter().copied().collect::<Array>()));
     head.insert("set", value("own"));
-    Ok(())
-}
-
-/// What only `sdcom_gust` has a use for.
-fn without_gust(table: &mut DocumentMut) -> Result<(), String> {
-    for name in ["gust_rms", "gust_time"] {
-        inside(table, "noise")?.remove(name);
-    }
-    inside(table, "validity")?.remove("alpha_gust");
     Ok(())
 }

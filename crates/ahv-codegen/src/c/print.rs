@@ -25,7 +25,7 @@ impl Printer {
             Source::Argument(Kind::Input) => format!("u->{name}"),
             Source::Argument(Kind::Noise) => format!("dw->{name}"),
             Source::Argument(Kind::Parameter) => format!("p->{name}"),
-            Source::Argument(Kind::Argument) => name.to_owned(),
+            Source::Argument(Kind::Argument) | Source::Result => name.to_owned(),
             Source::Stage(stage) if self.holds_stages => format!("{}.{name}", stage.argument),
             Source::Stage(stage) => format!("{}->{name}", stage.argument),
         }

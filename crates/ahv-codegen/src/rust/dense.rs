@@ -3,8 +3,8 @@
 use crate::schedule::tree::Expr;
 use crate::shape::{Shape, words};
 
-use super::format;
 use super::print::{expression, literal};
+use super::records;
 
 /// Zeros that a result needs, by name, each with the vector type that it is a splat of and its component.
 pub(crate) type Zeros = Vec<(String, &'static str, String)>;
@@ -96,7 +96,7 @@ impl Shape<'_> {
     }
 
     /// The struct of the structurally non-zero entries; none for what has no compressed form.
-    pub(super) fn entries(&self) -> Option<EntriesText> {
+    pub(super) fn entries(&self) -> Option<EntriesText<'_>> {
         let alias = self.alias()?;
         let vectors: Vec<&str> = self.vectors().collect();
         let symmetric = if self.output.symmetric {
@@ -106,37 +106,28 @@ impl Shape<'_> {
         };
         let open = vectors.join("<");
         let close = ">".repeat(vectors.len() - 1);
-        let entries = self.entry_names().zip(&self.output.entries);
-        let entries = entries.map(|(name, entry)| format!("{name}: {},", entry.at.join(".")));
+        let entries = self.output.entries.iter();
         Some(EntriesText {
             name: format!("{alias}Entries"),
             alias,
             pattern: format!("{}_PATTERN", words(alias).to_uppercase()),
             shape: format!("{symmetric}{open}{close}"),
-            entries: entries.collect(),
-        })
-    }
-
-    /// The name of each entry: its row, then what it is a derivative by.
-    pub(crate) fn entry_names(&self) -> impl Iterator<Item = String> {
-        let entries = self.output.entries.iter();
-        entries.map(|entry| match entry.at.split_first() {
-            Some((row, others)) => format!("{row}_by_{}", others.join("_")),
-            None => String::new(),
+            entries: entries.map(|entry| &*entry.at).collect(),
         })
     }
 }
 
 /// A struct of entries, and the constant that says where they stand.
-pub(super) struct EntriesText {
+pub(super) struct EntriesText<'a> {
     pub(super) name: String,
     pub(super) alias: &'static str,
     pub(super) pattern: String,
     shape: String,
-    entries: Vec<String>,
+    /// The place of each.
+    entries: Vec<&'a [String]>,
 }
 
-impl EntriesText {
+impl EntriesText<'_> {
     /// Its definition, as the formatter's marker.
     pub(super) fn definition(&self) -> String {
         let Self {
@@ -146,9 +137,10 @@ impl EntriesText {
             shape,
             entries,
         } = self;
-        let about = format!("/// The structurally non-zero entries of a [`{alias}`].");
-        let head = format!("pub struct {name}, {pattern}: {shape}");
-        format::entries(&about, &head, entries)
+        let about = format!("The structurally non-zero entries of a [`{alias}`].");
+        let rows = format!("{}_entries", words(alias));
+        let head = format!("pub struct {name} in {rows}, {pattern}: {shape}");
+        records::entries(&about, &head, entries)
     }
 }
 

@@ -1,56 +1,44 @@
 //! Formats emitted Rust. prettyplease works on the syntax tree, which has no comments: they travel as macro
-//! calls and become comments again afterwards.
+//! calls and become comments again afterwards. What it breaks too early is joined again.
 
 use crate::EmitError;
+
+use super::layout::{is_import, laid_out, length};
 
 /// A comment on a line of its own, with a blank line before it.
 pub(super) const SECTION: &str = "__section!";
 /// A comment at the end of the line before it.
 pub(super) const TRAILING: &str = "__trailing!";
 
-/// Addends of a sum, separated by `|`, one a line.
+/// Addends of a sum, separated by `|`: one a line where they do not stand on one.
 pub(super) const ADDENDS: &str = "__addends!";
 
-/// A call of a macro of `ahv-core`, line by line, separated by `|`: the formatter does not lay out the body of a macro.
-const CALL: &str = "__call!";
+/// Lines as they are: the formatter does not lay out the body of a macro.
+const VERBATIM: &str = "__verbatim!";
 
-/// An `impl_vector!` with a line for each field.
-pub(super) fn vector(name: &str, fields: &[String]) -> String {
-    call("impl_vector", "", name, fields)
+/// An item whose lines are laid out already.
+pub(super) fn verbatim(text: &str) -> String {
+    format!("{VERBATIM}({text:?});")
 }
-
-/// An `entries!` with a line for each entry.
-pub(super) fn entries(about: &str, head: &str, entries: &[String]) -> String {
-    call("entries", about, head, entries)
-}
-
-fn call(name: &str, about: &str, head: &str, fields: &[String]) -> String {
-    let text = format!("{name}|{about}|{head}|{}", fields.join("|"));
-    format!("{CALL}({text:?});")
-}
-
-/// The attribute of a struct that `record!` of `ahv-core` defines.
-const RECORD: &str = "#[__record]";
-
-/// Lines of code stay below this width, comments included.
-const WIDTH: usize = 120;
 
 /// Formats the text of a Rust file.
 pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String, EmitError> {
-    let file = syn::parse_file(text).map_err(|error| EmitError::NotRust {
+    let not_rust = |error: syn::Error| EmitError::NotRust {
         path: path.to_owned(),
         message: error.to_string(),
-    })?;
+    };
+    let file = syn::parse_file(text).map_err(not_rust)?;
     let mut out = String::with_capacity(text.len() + header.len());
     for line in header.lines() {
         out += &format!("// {line}\n");
     }
     let formatted = prettyplease::unparse(&file);
-    let mut lines = formatted.lines().peekable();
-    let mut previous = "";
-    while let Some(line) = lines.next() {
+    let lines: Vec<&str> = formatted.lines().collect();
+    let (mut at, mut previous) = (0, "");
+    while let Some(&line) = lines.get(at) {
         let code = line.trim_start();
         let indent = &line[..line.len() - code.len()];
+        let mut taken = 1;
         if let Some(comment) = argument(code, SECTION) {
             // The first heading of a block needs no blank line above it.
             if !previous.ends_with('{') {
@@ -59,88 +47,34 @@ pub(crate) fn format_rust(path: &str, header: &str, text: &str) -> Result<String
             if !comment.is_empty() {
                 out += &format!("{indent}// {comment}\n");
             }
-        } else if let Some(comment) = argument(code, TRAILING) {
-            let width = out
-                .lines()
-                .next_back()
-                .map_or(0, |last| last.chars().count());
-            if width + comment.chars().count() + 4 <= WIDTH {
-                out.truncate(out.trim_end().len());
-                out += &format!(" // {comment}\n");
-            }
-        } else if let Some(call) = code.strip_prefix(CALL) {
-            let mut call = call.to_owned();
-            while !call.ends_with(");") {
-                call += lines.next().map_or(");", str::trim);
-            }
-            out += &macro_call(&call);
-        } else if code == RECORD {
-            record(&mut out, &mut lines);
-        } else if let Some((start, call)) = code.split_once(ADDENDS) {
-            let mut call = call.to_owned();
-            while !call.ends_with([';', ')']) {
-                call += lines.next().map_or(";", str::trim);
-            }
-            let end = if call.ends_with(';') { ";" } else { "" };
-            let listed = call.trim_start_matches("(\"").trim_end_matches(';');
-            let listed = listed
-                .trim_end_matches("\")")
-                .replace('|', &format!("\n{indent}    "));
-            let first = listed.lines().next().map_or(0, |line| line.chars().count());
-            // A long name leaves no room for the first addend beside it.
-            let start = if indent.len() + start.len() + first < WIDTH {
-                start.to_owned()
-            } else {
-                format!("{}\n{indent}    ", start.trim_end())
-            };
-            out += &format!("{indent}{start}{listed}{end}\n");
+        } else if code.starts_with(VERBATIM) {
+            let end = lines[at..].iter().position(|line| line.ends_with(");"));
+            taken = end.map_or(1, |end| end + 1);
+            let literal: String = lines[at..at + taken].iter().map(|it| it.trim()).collect();
+            let literal = literal.trim_start_matches(VERBATIM).trim_end_matches(");");
+            let literal = syn::parse_str::<syn::LitStr>(literal.trim_start_matches('('));
+            out += &format!("\n{}\n", literal.map_err(not_rust)?.value());
         } else {
             if starts_item(indent, code, previous) {
                 out.push('\n');
             }
-            out += line;
-            out.push('\n');
+            taken = length(&lines[at..]);
+            let next = lines.get(at + taken).map(|next| next.trim_start());
+            let comment = next.and_then(|next| argument(next, TRAILING));
+            let text = laid_out(&lines[at..at + taken], comment.unwrap_or_default());
+            if text.is_none() {
+                // What does not fit has lines of its own, as the formatter broke it.
+                taken = 1;
+            }
+            out += &text.unwrap_or_else(|| format!("{line}\n"));
+            taken += usize::from(comment.is_some());
         }
-        previous = line;
+        // A list of imports is known by its first line, the head of a function ends with its block's beginning.
+        let last = lines[at + taken - 1];
+        previous = if last.ends_with('{') { last } else { line };
+        at += taken;
     }
     Ok(out)
-}
-
-/// The call of a macro that a marker stands for.
-fn macro_call(marker: &str) -> String {
-    let text = marker
-        .trim_start_matches("(\"")
-        .trim_end_matches("\");")
-        .replace("\\\"", "\"");
-    let mut parts = text.split('|');
-    let mut part = || parts.next().unwrap_or_default().to_owned();
-    let (name, about, head) = (part(), part(), part());
-    let mut out = format!("\nahv_core::{name}! {{\n");
-    if !about.is_empty() {
-        out += &format!("    {about}\n");
-    }
-    out += &format!("    {head} {{\n");
-    for field in parts {
-        out += &format!("        {field}\n");
-    }
-    out + "    }\n}\n"
-}
-
-/// A struct as the body of `record!`. What is written of it already, its description, goes inside.
-fn record<'a>(out: &mut String, lines: &mut impl Iterator<Item = &'a str>) {
-    let about = out.trim_end().rfind("\n\n").map_or(0, |at| at + 2);
-    let about: String = out.split_off(about);
-    *out += "ahv_core::record! {\n";
-    for line in about.lines() {
-        *out += &format!("    {line}\n");
-    }
-    for line in lines {
-        *out += &format!("    {line}\n");
-        if line == "}" {
-            break;
-        }
-    }
-    *out += "}\n\n";
 }
 
 /// Whether a blank line separates an item from what stands before it.
@@ -152,7 +86,8 @@ fn starts_item(indent: &str, code: &str, previous: &str) -> bool {
     };
     let described =
         previous.trim_start().starts_with("///") || previous.trim_start().starts_with("#[");
-    if code.starts_with(['}', ')', ']']) || described || previous.ends_with('{') {
+    let opens = previous.ends_with('{') && !is_import(previous);
+    if code.starts_with(['}', ')', ']']) || described || opens {
         return false;
     }
     match indent.len() {
@@ -187,6 +122,73 @@ mod tests {
         assert_eq!(
             formatted,
             "// Made.\n\nfn f() {\n    // Air, (2)\n    let a = 1.0; // ft\n\n    // Motion\n    g(a);\n}\n"
+        );
+    }
+
+    /// The body of a function of this text, formatted.
+    fn body(statements: &str) -> String {
+        let text = format_rust("f.rs", "", &format!("fn f() {{ {statements} }}")).unwrap();
+        let body = text.trim().strip_prefix("fn f() {\n");
+        body.unwrap().trim_end_matches('}').to_owned()
+    }
+
+    #[test]
+    fn what_fits_stands_on_one_line_and_the_rest_breaks_at_sums() {
+        let (long, name) = (
+            "a_value_with_a_long_name",
+            "another_value_with_a_name_as_long",
+        );
+        let one = format!("let x = {long} * {name} + {long} * {name};");
+        assert!(
+            one.len() > 89 && body(&one) == format!("    {one}\n"),
+            "{}",
+            body(&one)
+        );
+        let two = format!("let x = {long} * {name} * {long} + {long} * {name};");
+        let broken = format!("    let x = {long} * {name} * {long}\n        + {long} * {name};\n");
+        assert_eq!(body(&two), broken);
+        let listed = format!("let x = {ADDENDS}(\"{long} * {name}|+ {name}|+ {long} * {name}\");");
+        let lines =
+            format!("    let x = {long} * {name}\n        + {name}\n        + {long} * {name};\n");
+        assert_eq!(body(&listed), lines);
+        let short = format!("let x = {ADDENDS}(\"a|+ b|+ c\");");
+        assert_eq!(body(&short), "    let x = a + b + c;\n");
+    }
+
+    #[test]
+    fn where_a_statement_breaks_depends_on_no_unit() {
+        let (long, name) = (
+            "a_value_with_a_long_name",
+            "another_value_with_a_name_as_long",
+        );
+        let statement = format!("let x = {long} * {name} * {long};");
+        let with = |unit: &str| body(&format!("{statement} {TRAILING}({unit:?});"));
+        let (short, wide) = (with("m"), with("slug^0.5*ft^1.5/s^2/rad^2"));
+        assert_eq!(short.replace(" // m", ""), format!("    {statement}\n"));
+        // A unit without room stands above.
+        assert_eq!(
+            wide,
+            format!("    // slug^0.5*ft^1.5/s^2/rad^2\n    {statement}\n")
+        );
+    }
+
+    #[test]
+    fn heads_imports_and_items_are_filled() {
+        let types: Vec<String> = (0..9).map(|k| format!("ALongTypeName{k}")).collect();
+        let imports = format!("use super::{{{}}};", types.join(", "));
+        let text = format_rust("f.rs", "", &imports).unwrap();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.is_empty()).collect();
+        assert_eq!(lines.len(), 4, "{text}");
+        assert!(
+            lines[1].len() > 100 && lines.iter().all(|line| line.len() <= 120),
+            "{text}"
+        );
+        let call = "let x = [Rule::new(\"a rule with a name\", \"and a reason for it that is long\", Sign::Positive)];";
+        let items = format!("const A: &[Rule] = &{}", &call["let x = ".len()..]);
+        let text = format_rust("f.rs", "", &items).unwrap();
+        assert!(
+            text.contains("for it that is long\", Sign::Positive)"),
+            "{text}"
         );
     }
 

@@ -3,18 +3,17 @@
 use askama::Template;
 
 use super::filters;
-use super::wording::vector_impl;
+use super::records;
 use crate::EmitError;
-use crate::ir::{Basis, Choice, Document, Parameter, Status, Variable, capitalised};
+use crate::ir::{Basis, Choice, Document, Status, Variable, capitalised};
 use crate::template::render;
 use crate::values::Values;
 
 #[derive(Template)]
 #[template(path = "parameters.rs")]
 struct ParametersTemplate<'a> {
-    parameters: &'a [Parameter],
+    parameters: String,
     validity: &'a [Variable],
-    implementation: String,
 }
 
 #[derive(Template)]
@@ -108,11 +107,12 @@ pub(crate) fn files(
     document: &Document,
     values: &Values,
 ) -> Result<Vec<(&'static str, String)>, EmitError> {
-    let fields = document.parameters.iter().map(|p| (&p.name, &p.unit));
+    let fields = document.parameters.iter();
+    let fields = fields.map(|it| (&*it.name, it.described(), &*it.unit));
+    let about = "One value for each parameter and coefficient of the table.";
     let parameters = ParametersTemplate {
-        parameters: &document.parameters,
+        parameters: records::vector(about, "Parameters", fields, &document.units)?,
         validity: &document.validity,
-        implementation: vector_impl("Parameters", fields, &document.units)?,
     };
     let table = TableTemplate {
         name: &document.provenance.table,

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::dense::Zeros;
-use super::print::{expression, section, statement, value_of};
+use super::dense::{EntriesText, Zeros};
+use super::places::placed;
+use super::print::{statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
 use crate::ir::capitalised;
-use crate::schedule::given::Stage;
 use crate::schedule::pieces::Group;
-use crate::schedule::program::{Function, Program};
-use crate::schedule::tree::{Body, Source, StageKind, Statement};
+use crate::schedule::program::{Function, Program, taken};
+use crate::schedule::tree::{Body, Expr, Source, StageKind, Statement};
 use crate::shape::Shape;
 use crate::wording::{summary, wrapped};
 
@@ -46,8 +46,12 @@ pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<F
         .map(|(group, body)| piece(program, function, group, body))
         .collect();
     let Some(from) = from(function) else {
-        let stages = stage_lines(program, &function.stages);
-        text.statements.splice(0..0, stages);
+        if let Some(value) = field_of_stage(program, function) {
+            text.outputs = vec![(String::new(), value)];
+        } else {
+            let stages = stage_lines(program, &function.stages);
+            text.statements.splice(0..0, stages);
+        }
         items.push(text);
         return items;
     };
@@ -75,21 +79,17 @@ pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<F
     items
 }
 
-/// What a body takes: arguments of the model, then stages, as far as it refers to them.
-pub(super) fn taken(uses: impl Fn(Source) -> bool, stages: &[Stage]) -> Vec<(String, String)> {
-    let arguments = [
-        ("x", Kind::State, "State"),
-        ("u", Kind::Input, "Input"),
-        ("p", Kind::Parameter, "Prepared"),
-        ("dw", Kind::Noise, "Noise"),
-    ];
-    let arguments = arguments.into_iter();
-    let arguments = arguments.filter(|(_, kind, _)| uses(Source::Argument(*kind)));
-    let arguments = arguments.map(|(name, _, of)| (name.to_owned(), of.to_owned()));
-    let stages = stages.iter().map(|stage| stage.kind);
-    let stages = stages.filter(|kind| uses(Source::Stage(kind)));
-    let stages = stages.map(|kind| (kind.argument.to_owned(), kind.type_name.to_owned()));
-    arguments.chain(stages).collect()
+/// What a body takes, by name and type.
+pub(super) fn named(taken: &[Source]) -> Vec<(&'static str, &'static str)> {
+    let argument = |source: &Source| match source {
+        Source::Argument(Kind::State) => Some(("x", "State")),
+        Source::Argument(Kind::Input) => Some(("u", "Input")),
+        Source::Argument(Kind::Parameter) => Some(("p", "Prepared")),
+        Source::Argument(Kind::Noise) => Some(("dw", "Noise")),
+        Source::Argument(Kind::Argument) | Source::Result => None,
+        Source::Stage(kind) => Some((kind.argument, kind.type_name)),
+    };
+    taken.iter().filter_map(argument).collect()
 }
 
 /// A function that computes some entries of another.
@@ -99,20 +99,20 @@ fn piece(
     group: &Group,
     body: &Body,
 ) -> FunctionText {
-    let mut statements: Vec<String> = body.statements.iter().map(statement).collect();
-    if !statements.is_empty() {
-        statements.push(section(""));
-    }
-    for (entry, value) in group.entries.iter().zip(&body.results) {
-        let field = place(function, *entry);
-        statements.push(format!("{field} = {};", value_of(value)));
-    }
-    let targets = targets(function, group).into_iter();
-    let targets = targets.map(|(name, of)| format!("{name}: &mut {of}<R>"));
-    let taken = taken(|source| body.uses(source), &program.stages).into_iter();
-    let taken = taken.map(|(name, of)| format!("{name}: &{of}<R>"));
+    let places = group.entries.iter();
+    let places: Vec<_> = places.map(|it| Some(place(function, *it))).collect();
+    let statements = placed(body, &places).statements;
+    let targets = function.targets(group).into_iter().map(|output| {
+        let of = function.shapes[output].entries();
+        let of = of.map_or_else(String::new, |it| it.name);
+        format!("{}: &mut {of}<R>", result_name(function, output))
+    });
+    let taken = named(&taken(|source| body.uses(source), &program.stages));
+    let taken = taken
+        .into_iter()
+        .map(|(name, of)| format!("{name}: &{of}<R>"));
     FunctionText {
-        name: piece_name(function, group),
+        name: function.piece_name(group),
         docs: wrapped(&format!(
             "Entries of [`{}`]: derivatives by {}.",
             own_name(function),
@@ -120,31 +120,12 @@ fn piece(
         )),
         arguments: targets.chain(taken).collect(),
         result: String::new(),
-        statements,
+        statements: statements.iter().map(statement).collect(),
         is_public: false,
         sets_result_off: false,
         zeros: Zeros::new(),
         outputs: Vec::new(),
     }
-}
-
-fn piece_name(function: &Function<'_>, group: &Group) -> String {
-    format!("{}_by_{}", function.ir.name, group.label)
-}
-
-/// The structs that a piece fills, as arguments.
-fn targets(function: &Function<'_>, group: &Group) -> Vec<(String, String)> {
-    let mut targets = Vec::new();
-    for &entry in &group.entries {
-        let (output, _) = function.locate(entry);
-        let shape = &function.shapes[output];
-        let name = result_name(function, output);
-        let of = shape.entries().map_or_else(String::new, |it| it.name);
-        if !targets.contains(&(name.clone(), of.clone())) {
-            targets.push((name, of));
-        }
-    }
-    targets
 }
 
 fn result_name(function: &Function<'_>, output: usize) -> String {
@@ -156,12 +137,11 @@ fn result_name(function: &Function<'_>, output: usize) -> String {
     }
 }
 
-/// An entry of a function as a field of the struct that it returns.
+/// An entry of a function in the struct that it returns.
 fn place(function: &Function<'_>, entry: usize) -> String {
     let (output, position) = function.locate(entry);
-    let name = function.shapes[output].entry_names().nth(position);
-    let name = name.unwrap_or_default();
-    format!("{}.{name}", result_name(function, output))
+    let entry = &function.shapes[output].output.entries[position];
+    format!("{}.{}", result_name(function, output), entry.at.join("."))
 }
 
 /// The argument that holds a stage.
@@ -171,23 +151,40 @@ pub(super) fn stage_argument(kind: &StageKind, is_used: bool) -> String {
 }
 
 /// The statements that compute stages.
-pub(super) fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<String> {
+fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<String> {
     let line = |&position: &usize| {
-        let stage = &program.stages[position];
-        let mut call = format!("{}(x, u, p", stage.kind.function);
-        for earlier in &program.stages[..position] {
-            if stage.uses(Source::Stage(earlier.kind)) {
-                call += &format!(", &{}", earlier.kind.argument);
-            }
-        }
-        format!("let {} = {call});", stage.kind.argument)
+        let argument = program.stages[position].kind.argument;
+        format!("let {argument} = {};", call_of_stage(program, position))
     };
     positions.iter().map(line).collect()
 }
 
+fn call_of_stage(program: &Program<'_>, position: usize) -> String {
+    let earlier = program.earlier(position).into_iter();
+    let earlier: String = earlier
+        .map(|kind| format!(", &{}", kind.argument))
+        .collect();
+    format!(
+        "{}(x, u, p{earlier})",
+        program.stages[position].kind.function
+    )
+}
+
+/// The value of a function that is a field of its only stage.
+fn field_of_stage(program: &Program<'_>, function: &Function<'_>) -> Option<String> {
+    let ([position], [], [Expr::Component(Source::Stage(_), field)]) = (
+        &*function.stages,
+        &*function.body.statements,
+        &*function.body.results,
+    ) else {
+        return None;
+    };
+    let is_scalar = function.shapes.iter().all(|shape| shape.axes.is_empty());
+    is_scalar.then(|| format!("{}.{field}", call_of_stage(program, *position)))
+}
+
 fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<String> {
-    let parts = function.parts.iter().map(|&part| &program.functions[part]);
-    let bodies: Vec<&Function<'_>> = parts.chain([function]).collect();
+    let bodies = program.bodies(function);
     let used = |kind: Kind| {
         let by_stages = !function.stages.is_empty() && kind != Kind::Noise;
         by_stages || bodies.iter().any(|it| it.uses(Source::Argument(kind)))
@@ -199,8 +196,9 @@ fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<Strin
 
 /// The name of the function that takes what is computed once, where there is one.
 pub(super) fn from(function: &Function<'_>) -> Option<String> {
-    let takes = function.is_part && !function.stages.is_empty();
-    takes.then(|| format!("{}_from", own_name(function)))
+    function
+        .takes_stages()
+        .then(|| format!("{}_from", own_name(function)))
 }
 
 fn own_name(function: &Function<'_>) -> String {
@@ -266,57 +264,30 @@ fn composed(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
 
 /// A function with a body or pieces, without what it takes from stages.
 fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
-    let Function {
-        ir, shapes, body, ..
-    } = function;
-    let mut statements: Vec<String> = body.statements.iter().map(statement).collect();
-    let sets_result_off = !matches!(body.statements.last(), None | Some(Statement::Section(_)));
-    let mut zeros = Zeros::new();
-    let (mut outputs, mut results) = (Vec::new(), Vec::new());
-    let mut remaining = body.results.as_slice();
-    for (position, (output, shape)) in ir.outputs.iter().zip(shapes).enumerate() {
-        let (result, value) = match shape.entries().filter(|_| ir.compressed) {
-            Some(entries) if !function.pieces.is_empty() => {
-                let name = result_name(function, position);
-                statements.push(format!(
-                    "let mut {name} = {}::splat(R::ZERO);",
-                    entries.name
-                ));
-                (format!("{}<R>", entries.name), name)
-            }
-            entries => {
-                let (values, rest) = remaining.split_at(output.entries.len());
-                remaining = rest;
-                match entries {
-                    Some(entries) => {
-                        let fields = shape.entry_names().zip(values);
-                        let fields =
-                            fields.map(|(name, value)| format!("{name}: {}", expression(value)));
-                        let fields: Vec<String> = fields.collect();
-                        let literal = if fields.is_empty() {
-                            format!("{}::splat(R::ZERO)", entries.name)
-                        } else {
-                            format!("{} {{ {} }}", entries.name, fields.join(", "))
-                        };
-                        (format!("{}<R>", entries.name), literal)
-                    }
-                    None => {
-                        let value = match values {
-                            [value] if shape.axes.is_empty() => value_of(value),
-                            _ => shape.dense(values, &mut zeros),
-                        };
-                        (shape.result(), value)
-                    }
-                }
-            }
+    let Function { ir, shapes, .. } = function;
+    let mut statements = Vec::new();
+    let (mut results, mut places) = (Vec::new(), Vec::new());
+    for (position, shape) in shapes.iter().enumerate() {
+        let entries = shape.entries().filter(|_| ir.compressed);
+        let here = places.len()..places.len() + shape.output.entries.len();
+        let Some(EntriesText { name: of, .. }) = entries else {
+            places.extend(here.map(|_| None));
+            results.push(shape.result());
+            continue;
         };
-        results.push(result);
-        outputs.push((output.name.clone(), value));
+        let name = result_name(function, position);
+        let mutable = if here.is_empty() { "" } else { "mut " };
+        statements.push(format!("let {mutable}{name} = {of}::splat(R::ZERO);"));
+        places.extend(here.map(|entry| Some(place(function, entry))));
+        results.push(format!("{of}<R>"));
     }
-    if !function.pieces.is_empty() {
-        let pieces = function.pieces.iter();
-        statements
-            .extend(pieces.map(|(group, body)| call_of_piece(program, function, group, body)));
+    let body = placed(&function.body, &places);
+    statements.extend(body.statements.iter().map(statement));
+    let pieces = function.pieces.iter();
+    statements.extend(pieces.map(|(group, body)| call_of_piece(program, function, group, body)));
+    let mut zeros = Zeros::new();
+    let mut outputs = values(function, &body.results, &mut zeros);
+    if ir.compressed {
         let names: Vec<String> = outputs.into_iter().map(|(_, value)| value).collect();
         outputs = vec![(String::new(), tuple(&names))];
     }
@@ -324,7 +295,9 @@ fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
     let by_stages = is_whole && !function.stages.is_empty();
     let used =
         |kind: Kind| (by_stages && kind != Kind::Noise) || function.uses(Source::Argument(kind));
-    let scalars = body.scalars().into_iter().map(|name| format!("{name}: R"));
+    let scalars = function.body.scalars().into_iter();
+    let scalars = scalars.map(|name| format!("{name}: R"));
+    let is_set_off = !matches!(body.statements.last(), None | Some(Statement::Section(_)));
     FunctionText {
         name: own_name(function),
         docs: documentation(function),
@@ -332,10 +305,34 @@ fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
         result: tuple(&results),
         statements,
         is_public: true,
-        sets_result_off,
+        sets_result_off: is_set_off && !ir.compressed,
         zeros,
         outputs,
     }
+}
+
+/// The outputs of a function, each by name: a struct of entries, or the dense form of what has none.
+fn values(
+    function: &Function<'_>,
+    mut results: &[Expr],
+    zeros: &mut Zeros,
+) -> Vec<(String, String)> {
+    let mut outputs = Vec::new();
+    for (position, shape) in function.shapes.iter().enumerate() {
+        let output = &function.ir.outputs[position];
+        if function.ir.compressed && shape.entries().is_some() {
+            outputs.push((output.name.clone(), result_name(function, position)));
+            continue;
+        }
+        let (values, rest) = results.split_at(output.entries.len());
+        results = rest;
+        let value = match values {
+            [value] if shape.axes.is_empty() => value_of(value),
+            _ => shape.dense(values, zeros),
+        };
+        outputs.push((output.name.clone(), value));
+    }
+    outputs
 }
 
 /// The call of a piece. Stages are at hand by value, or as arguments by reference.
@@ -345,20 +342,21 @@ fn call_of_piece(
     group: &Group,
     body: &Body,
 ) -> String {
-    let targets = targets(function, group).into_iter();
-    let targets = targets.map(|(name, _)| format!("&mut {name}"));
+    let targets = function.targets(group).into_iter();
+    let targets = targets.map(|output| format!("&mut {}", result_name(function, output)));
     let by_value = from(function).is_none();
-    let taken = taken(|source| body.uses(source), &program.stages).into_iter();
-    let taken = taken.map(|(name, _)| {
-        let is_stage = program.stages.iter().any(|it| it.kind.argument == name);
-        if is_stage && by_value {
+    let name = |source: &Source| {
+        let (name, _) = *named(&[*source]).first()?;
+        let is_own = by_value && matches!(source, Source::Stage(_));
+        Some(if is_own {
             format!("&{name}")
         } else {
-            name
-        }
-    });
-    let arguments: Vec<String> = targets.chain(taken).collect();
-    format!("{}({});", piece_name(function, group), arguments.join(", "))
+            name.to_owned()
+        })
+    };
+    let taken = taken(|source| body.uses(source), &program.stages);
+    let arguments: Vec<String> = targets.chain(taken.iter().filter_map(name)).collect();
+    format!("{}({});", function.piece_name(group), arguments.join(", "))
 }
 
 fn documentation(function: &Function<'_>) -> Vec<String> {

@@ -1,12 +1,18 @@
 //! The Rust files of one model: its vectors, its prepared parameters and its functions.
 
+pub(crate) mod checks;
 mod dense;
 #[allow(unreachable_pub, reason = "the functions that `filter_fn` makes are")]
 pub(crate) mod filters;
-pub(crate) mod format;
-pub(crate) mod home;
+mod format;
+mod home;
 mod items;
+mod layout;
+mod package;
+mod places;
 mod print;
+mod records;
+mod stages;
 mod wording;
 
 use askama::Template;
@@ -14,16 +20,25 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::EmitError;
 use crate::ir::{self, Basis, Variable};
-use crate::schedule::Cost;
-use crate::schedule::given::Stage;
 use crate::schedule::program::Program;
-use crate::schedule::stages;
-use crate::schedule::tree::{Source, StageKind, Statement};
 use crate::template::render;
-use crate::wording::wrapped;
 use items::Item;
-use print::statement;
-use wording::{arguments, formula, vector_impl};
+pub(crate) use package::Package;
+
+/// The texts of the templates, for the manifest.
+pub(crate) const TEMPLATES: [&str; 11] = [
+    include_str!("../../templates/manifest.toml"),
+    include_str!("../../templates/choices.rs"),
+    include_str!("../../templates/description.rs"),
+    include_str!("../../templates/functions.rs"),
+    include_str!("../../templates/lib.rs"),
+    include_str!("../../templates/model.rs"),
+    include_str!("../../templates/nominal.rs"),
+    include_str!("../../templates/parameters.rs"),
+    include_str!("../../templates/provenance.rs"),
+    include_str!("../../templates/stages.rs"),
+    include_str!("../../templates/table.rs"),
+];
 
 #[derive(Template)]
 #[template(path = "model.rs")]
@@ -37,7 +52,7 @@ struct ModelTemplate<'a> {
     has_choices: bool,
     /// What the home of the table shares.
     shared: Vec<String>,
-    /// Vectors, each with its implementation.
+    /// Vectors, each with its definition.
     vectors: Vec<(Vector<'a>, String)>,
     /// States that decay by themselves, each with its rate as a field of `Prepared`.
     coloured: &'a [(String, String)],
@@ -111,34 +126,6 @@ struct Vector<'a> {
 }
 
 #[derive(Template)]
-#[template(path = "stages.rs")]
-struct StagesTemplate<'a> {
-    about: String,
-    imports: Vec<&'static str>,
-    stages: Vec<StageText<'a>>,
-}
-
-struct StageText<'a> {
-    kind: &'static StageKind,
-    docs: Vec<String>,
-    fields: Vec<(&'a str, Vec<String>)>,
-    arguments: String,
-    /// Whether it is a part of every function that calls it.
-    is_inline: bool,
-    /// Statements, where one part fills all.
-    statements: Vec<String>,
-    /// Otherwise what each part takes, its call and its statements.
-    parts: Vec<PartText>,
-}
-
-struct PartText {
-    name: String,
-    arguments: String,
-    call: String,
-    statements: Vec<String>,
-}
-
-#[derive(Template)]
 #[template(path = "functions.rs")]
 struct FunctionsTemplate {
     label: String,
@@ -153,14 +140,14 @@ struct FunctionsTemplate {
 }
 
 /// The text of each Rust file of a model, by its name without ending.
-pub(crate) fn files(program: &Program<'_>) -> Result<BTreeMap<String, String>, EmitError> {
+fn files(program: &Program<'_>) -> Result<BTreeMap<String, String>, EmitError> {
     let mut files = BTreeMap::new();
     for group in program.groups() {
         files.insert(group.to_owned(), functions(program, group)?);
     }
-    files.insert("prepared".to_owned(), prepared(program)?);
+    files.insert("prepared".to_owned(), stages::prepared(program)?);
     if !program.stages.is_empty() {
-        files.insert("stages".to_owned(), stages(program)?);
+        files.insert("stages".to_owned(), stages::shared(program)?);
     }
     let description = DescriptionTemplate {
         model: program.model,
@@ -197,8 +184,17 @@ fn module(program: &Program<'_>) -> Result<String, EmitError> {
     let vectors = vectors(model);
     let mut lists = Vec::new();
     for vector in &vectors {
-        let fields = vector.fields.iter().map(|v| (&v.name, &v.unit));
-        lists.push(vector_impl(vector.name, fields, &document.units)?);
+        let about = format!("{} of {}.", vector.doc, program.label());
+        let fields = vector
+            .fields
+            .iter()
+            .map(|it| (&*it.name, it.described(), &*it.unit));
+        lists.push(records::vector(
+            &about,
+            vector.name,
+            fields,
+            &document.units,
+        )?);
     }
     render(&ModelTemplate {
         model,
@@ -233,123 +229,6 @@ fn vectors(model: &ir::Model) -> Vec<Vector<'_>> {
     let doc = "Quantities that people look at";
     vectors.push(vector("Outputs", doc, Basis::Output, None));
     vectors
-}
-
-fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
-    let stage = &program.prepared;
-    let mut cost = Cost::default();
-    stage.parts.iter().for_each(|part| cost += part.cost());
-    let docs = ["Computes everything that depends on parameters alone.", ""];
-    let docs = docs.map(str::to_owned).into_iter();
-    let text = StageText {
-        docs: docs.chain([format!("{}.", cost.describe())]).collect(),
-        ..stage_text(stage, &[], "Parameters")
-    };
-    render(&StagesTemplate {
-        about: format!(
-            "What {} computes from its parameters once.",
-            program.label()
-        ),
-        imports: vec!["Parameters"],
-        stages: vec![text],
-    })
-}
-
-/// What functions share.
-fn stages(program: &Program<'_>) -> Result<String, EmitError> {
-    let stages = program.stages.iter();
-    let stages = stages.map(|stage| stage_text(stage, &program.stages, "Prepared"));
-    render(&StagesTemplate {
-        about: format!(
-            "What functions of {} share. Units are {}.",
-            program.label(),
-            program.document.units.in_words()
-        ),
-        imports: vec!["Input", "Prepared", "State"],
-        stages: stages.collect(),
-    })
-}
-
-/// A stage; `p` are values of this type.
-fn stage_text<'a>(stage: &'a Stage, all: &[Stage], parameters: &str) -> StageText<'a> {
-    let kind = stage.kind;
-    let values = stage.parts.iter().flat_map(|part| &part.statements);
-    let value = |name: &str| {
-        values.clone().find_map(|it| match it {
-            Statement::Set { field, value, .. } if field == name => Some(value),
-            _ => None,
-        })
-    };
-    let fields = stage.fields.iter().map(|field| {
-        let formula = || {
-            format!(
-                "`{}`.",
-                value(&field.name).map_or_else(String::new, formula)
-            )
-        };
-        let about = field.about.clone().unwrap_or_else(formula);
-        (&*field.name, wrapped(&about))
-    });
-    let arguments = if parameters == "Parameters" {
-        format!("p: &{parameters}<R>")
-    } else {
-        let mut arguments = arguments(|kind| stage.uses(Source::Argument(kind)));
-        let earlier = all.iter().map(|it| it.kind).filter(|it| **it != *kind);
-        let earlier = earlier.filter(|kind| stage.uses(Source::Stage(kind)));
-        arguments.extend(earlier.map(|kind| items::stage_argument(kind, true)));
-        arguments.join(", ")
-    };
-    let is_whole = stage.parts.len() == 1;
-    let mut statements = stage.parts.iter();
-    let mut statements: Vec<Vec<String>> = statements
-        .by_ref()
-        .map(|part| part.statements.iter().map(statement).collect())
-        .collect();
-    let whole = if is_whole {
-        statements.remove(0)
-    } else {
-        Vec::new()
-    };
-    let parts = stage.parts.iter().zip(statements).zip(1..);
-    let parts = parts.map(|((part, statements), number)| {
-        let taken = items::taken(|source| part.uses(source), all).into_iter();
-        let taken: Vec<(String, String)> =
-            taken.filter(|(name, _)| name != kind.argument).collect();
-        let name = format!("{}_part_{number}", kind.function);
-        let types = taken.iter().map(|(name, of)| {
-            let of = if name == "p" { parameters } else { of };
-            format!("{name}: &{of}<R>")
-        });
-        let own = format!("{}: &mut {}<R>", kind.argument, kind.type_name);
-        let names = taken.iter().map(|(name, _)| name.clone());
-        let names: Vec<String> = [format!("&mut {}", kind.argument)]
-            .into_iter()
-            .chain(names)
-            .collect();
-        PartText {
-            call: format!("{name}({});", names.join(", ")),
-            arguments: [own]
-                .into_iter()
-                .chain(types)
-                .collect::<Vec<_>>()
-                .join(", "),
-            name,
-            statements,
-        }
-    });
-    StageText {
-        kind,
-        docs: vec![format!("Computes [`{}`].", kind.type_name)],
-        fields: fields.collect(),
-        arguments,
-        is_inline: *kind != stages::PREPARED,
-        parts: if is_whole {
-            Vec::new()
-        } else {
-            parts.collect()
-        },
-        statements: whole,
-    }
 }
 
 /// The file of a group of functions.

@@ -4,7 +4,7 @@ use super::format::{ADDENDS, SECTION, TRAILING};
 use crate::graph::Kind;
 use crate::schedule::tree::{Binding, Expr, Operation, Sign, Source, Statement};
 
-/// A sum of this many addends is written one a line, so that a new one is one line of a diff.
+/// A sum of this many addends that is too long for a line is written one a line, so that a new one is one line of a diff.
 const LISTED: usize = 3;
 /// Longer addends are left to the formatter: one must stay on its line, indented.
 const WIDEST: usize = 108;
@@ -62,7 +62,7 @@ pub(super) fn component(source: Source, name: &str) -> String {
         Source::Argument(Kind::Input) => "u",
         Source::Argument(Kind::Noise) => "dw",
         Source::Argument(Kind::Parameter) => "p",
-        Source::Argument(Kind::Argument) => return name.to_owned(),
+        Source::Argument(Kind::Argument) | Source::Result => return name.to_owned(),
         Source::Stage(stage) => stage.argument,
     };
     format!("{argument}.{name}")

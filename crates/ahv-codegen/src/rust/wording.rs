@@ -1,11 +1,7 @@
 //! How emitted functions are worded: their names, arguments, results and documentation.
 
-use super::format;
-use super::print::expression;
-use crate::EmitError;
 use crate::graph::Kind;
 use crate::ir;
-use crate::schedule::tree::Expr;
 
 /// The name of the compressed form.
 pub(super) fn values_name(function: &ir::Function) -> String {
@@ -35,27 +31,4 @@ pub(super) fn arguments(used: impl Fn(Kind) -> bool) -> Vec<String> {
         arguments.push(by_reference("dw", Kind::Noise, "Noise"));
     }
     arguments
-}
-
-/// The implementation of a vector, from the names and units of its fields.
-pub(super) fn vector_impl<'a>(
-    vector: &str,
-    fields: impl Iterator<Item = (&'a String, &'a String)>,
-    units: &ir::Units,
-) -> Result<String, EmitError> {
-    let mut lines = Vec::new();
-    for (name, unit) in fields {
-        let (si, factor) = units.si(unit)?;
-        lines.push(format!("{name}: [{unit:?}, {si:?}, {factor:?}],"));
-    }
-    Ok(format::vector(vector, &lines))
-}
-
-/// The formula of a field for a reader.
-pub(super) fn formula(value: &Expr) -> String {
-    let text = expression(value).replace("c.", "").replace("p.", "");
-    match text.strip_suffix(".recip()") {
-        Some(below) => format!("1 / {below}"),
-        None => text.replace("R::TWO", "2").replace("R::from_f64(3.0)", "3"),
-    }
 }

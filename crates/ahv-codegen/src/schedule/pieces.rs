@@ -147,7 +147,7 @@ fn characters(expr: &Expr) -> usize {
 }
 
 /// Statements that fill a struct, in parts that are short enough. No part needs a name of another.
-pub(super) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
+pub(crate) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
     let total: usize = statements.iter().map(lines).sum();
     if total <= LONGEST {
         return vec![body_of(statements)];

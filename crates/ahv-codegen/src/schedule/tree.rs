@@ -29,6 +29,8 @@ pub(crate) enum Source {
     Argument(Kind),
     /// In what is computed once for several functions.
     Stage(&'static StageKind),
+    /// In the function's own result; the component is the whole path.
+    Result,
 }
 
 /// What a stage is called, and whose values it holds.

@@ -154,6 +154,8 @@ fn no_tables() {
             .contains("cannot read the folder of tables")
     );
     fs::create_dir(scratch.path("generator/tables")).expect("made");
+    // A program may stand beside its tables.
+    fs::write(scratch.path("generator/tables/Cargo.toml"), "[workspace]\n").expect("written");
     let message = scratch.refusal();
     assert!(
         message.contains("no table (*.toml) lies in generator/tables"),

@@ -1,5 +1,6 @@
 //! `ahv reproduce`: section 5 of the paper, computed again, as a page.
 
+mod differences;
 mod figures;
 mod page;
 mod random;
@@ -16,6 +17,7 @@ use ahv_plot::PlotError;
 use clap::Args;
 use serde::Serialize;
 
+use crate::reproduce::differences::{Difference, differences};
 use crate::reproduce::{Random, Size, vehicle};
 use page::Page;
 use sentences::{Finding, Sentence};
@@ -64,6 +66,7 @@ impl Findings {
 struct Numbers<'a> {
     random: &'a Random,
     vehicles: &'a [vehicle::Vehicle],
+    differences: &'a [Difference],
 }
 
 /// Runs the command.
@@ -87,18 +90,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Numeric(error.to_string()))?;
     drop(progress);
     let vehicles = vehicle::vehicles();
-    let page = page(&random, &vehicles)?;
-    write(
-        arguments,
-        &page,
-        &Numbers {
-            random: &random,
-            vehicles: &vehicles,
-        },
-    )
+    let differences = differences();
+    let page = page(&random, &vehicles, &differences)?;
+    let numbers = Numbers {
+        random: &random,
+        vehicles: &vehicles,
+        differences: &differences,
+    };
+    write(arguments, &page, &numbers)
 }
 
-fn page(random: &Random, vehicles: &[vehicle::Vehicle]) -> Result<Page, Failure> {
+fn page(
+    random: &Random,
+    vehicles: &[vehicle::Vehicle],
+    differences: &[Difference],
+) -> Result<Page, Failure> {
     let mut findings = Findings::default();
     let sections = vec![
         random::table1(random, &mut findings)?,
@@ -107,6 +113,7 @@ fn page(random: &Random, vehicles: &[vehicle::Vehicle]) -> Result<Page, Failure>
         random::reductions(random, &mut findings)?,
         trims::section(vehicles, &mut findings),
         roots::section(vehicles, &mut findings)?,
+        differences::section(differences, &mut findings),
     ];
     Ok(Page {
         subject: sentences::subject(&random.size),
@@ -161,6 +168,7 @@ mod tests {
     use ahv_cli::output;
 
     use super::{Numbers, page};
+    use crate::reproduce::differences::differences;
     use crate::reproduce::{Size, random, vehicle};
 
     /// The page of a small computation.
@@ -178,7 +186,8 @@ mod tests {
         };
         let random = random(&size, |_| ()).expect("computed");
         let vehicles = vehicle::vehicles();
-        let page = page(&random, &vehicles).expect("a page");
+        let differences = differences();
+        let page = page(&random, &vehicles, &differences).expect("a page");
         let html = page.html().expect("text");
         for fetch in [
             "src=",
@@ -200,6 +209,7 @@ mod tests {
             "Table 2",
             "Table 3",
             "Fig. 6",
+            "As printed and exact",
         ] {
             assert!(html.contains(part), "{part}");
         }
@@ -222,6 +232,7 @@ mod tests {
         let numbers = Numbers {
             random: &random,
             vehicles: &vehicles,
+            differences: &differences,
         };
         assert!(
             !output::json(&numbers)

@@ -377,6 +377,29 @@ pub(super) fn nearest_trim(distance: f64, name: &str) -> Finding {
     )
 }
 
+/// The difference that is the greatest share of its row, and that share: both are largest magnitudes over the box.
+pub(super) fn printed_form(name: &str, share: f64) -> Finding {
+    let agrees = share < AGREES;
+    finding(
+        agrees,
+        format!(
+            "Equations (27)-(35): over the box of validity {name} reaches {} of the largest magnitude of its row in the exact form, {} than {}.",
+            percent(share),
+            if agrees { "less" } else { "not less" },
+            percent(AGREES)
+        ),
+    )
+}
+
+/// What the table of differences shows.
+pub(super) fn differences() -> Sentence {
+    Sentence(
+        "The exact form is what (1)-(4) and (25) imply; the printed form is (27)-(35) without their misprints. \
+         A magnitude is the largest one at the corners of the box and at points spread over it."
+            .to_owned(),
+    )
+}
+
 /// Level flight of Table 2, the distance of the rigid COM by Earth, and where the DCOM's coefficients come from.
 pub(super) fn trims(
     [velocity, altitude]: [f64; 2],

@@ -219,6 +219,13 @@ fn trims_and_roots() {
         [nearest_trim(0.01, "a"), nearest_trim(0.1, "a")],
         ["2: a model with", "no model with"],
     );
+    both(
+        [printed_form("a", 0.01), printed_form("a", 1.1)],
+        [
+            "1.000 % of the largest magnitude of its row in the exact form, less",
+            "110.0 % of the largest magnitude of its row in the exact form, not less",
+        ],
+    );
     let origin = |source, status| Provenance::new(source, status, 0.4);
     let published = origin("parker2007", Status::Published);
     let place = [7702.08, 85_000.0];
