@@ -107,9 +107,8 @@ fn checked_in(
     questions: &[commands::Question],
     answers: &Answers,
 ) -> Result<(), String> {
-    let folder = shell::root().join("examples").join(example);
     println!("examples/{example}");
-    built(&folder, &["build", "--quiet", "--locked"])?;
+    build(&shell::root().join("examples").join(example))?;
     let own = Own::new(example, &shell::target().join("debug"));
     own.answers(questions)?;
     answers.compare(example, &own)
@@ -175,11 +174,11 @@ fn generate(place: &Path, package: &str) -> Result<(), String> {
     done.map(drop).map_err(|failure| failure.to_string())
 }
 
-/// Builds all programs, of the versions that the workspace is locked to.
+/// Builds all programs of a place, of the versions that the workspace is locked to.
 fn build(place: &Path) -> Result<(), String> {
     let lock = place.join("Cargo.lock");
     fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
-    println!("building {PLACE}");
+    println!("building {}", place.display());
     built(place, &["build", "--quiet"])
 }
 
