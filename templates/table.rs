@@ -30,6 +30,11 @@ pub const TABLE: Table = Table {
         ]),
 {%- endfor %}
     ],
+    joins: &[
+{%- for join in document.joins %}
+        {{ join|texts }},
+{%- endfor %}
+    ],
     validity: &[
 {%- for v in document.validity %}
         Interval::new("{{ v.name }}", {{ v.unit|text }}, VALIDITY.{{ v.name }}, &{{ bounded(v.name)|texts }}){{ only_for(v.models) }},

@@ -73,7 +73,8 @@ def winged_cone(model: Model) -> None:
         gravity = model.define("gravity", model[mu] / radius**2, "g(h)", "ft/s^2", "acceleration of gravity")
     with model.section("Curve fits", "(2)"):
         model.define(q_hat, model[c_bar] * Q / (2 * V))
-        model.define(tail, elevator - a)
+        # A gust that joins the angle of attack meets the tail, too.
+        model.define(tail, elevator - model.seen(alpha))
         lift_coefficient, drag_coefficient, moment_coefficient = map(model.fit, (C_L, C_D, C_M))
         thrust_coefficient = model.define(
             "thrust_coefficient",

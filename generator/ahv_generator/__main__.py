@@ -29,6 +29,10 @@ def main() -> int:
     derive.add_argument("--known", action="append", default=[], help="a table whose IR is known, and not derived again")
     derive.add_argument("--audit-known", action="store_true", help="leave audit.json empty where there is to be one")
     derive.add_argument("tables", type=Path, nargs="+")
+    verify = commands.add_parser("verify", help="check the models of tables at points, and write those as vectors")
+    verify.add_argument("--out", type=Path, required=True, help="folder for <model>.txt")
+    verify.add_argument("--points", type=int, required=True, help="points of each model")
+    verify.add_argument("tables", type=Path, nargs="+")
     evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
     evaluate.add_argument("--table", type=Path, required=True)
     evaluate.add_argument("--model", required=True, help="one of the models that the table lists")
@@ -38,6 +42,11 @@ def main() -> int:
     try:
         if arguments.command == "derive":
             _derive(arguments.tables, arguments.out, arguments.known, arguments.audit_known)
+        elif arguments.command == "verify":
+            # Here, because a derivation needs no mpmath.
+            from .verify import verify_all
+
+            print(json.dumps(verify_all(arguments.tables, arguments.points, arguments.out)))
         else:
             table = load(arguments.table)
             if arguments.model not in table.models:

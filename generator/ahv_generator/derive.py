@@ -14,12 +14,14 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import ir
-from .diagnostics import Diagnostic, TableError
+from . import emit, ir
+from .diagnostics import Diagnostic, Faults, TableError
 from .table import Table, load
 
 AUDIT = "audit"
-_NOTHING = ir.Part("", frozenset())
+# A family that runs at that time has another `os._exit`.
+_EXIT = os._exit
+_NOTHING = ir.Part("", frozenset(), frozenset())
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,10 @@ def derive(tables: Iterable[Table], known: Iterable[str] = (), *, audit_known: b
     # Models of one table have most faults in common.
     faults = [next((it for m in table.models if (it := done[table.name, m].faults)), ()) for table in sought]
     diagnostics = [fault for of_table in faults for fault in of_table]
+    for table in sought if not diagnostics else ():
+        found = Faults(table.path.name)
+        emit.check(table.emitted, frozenset().union(*(done[table.name, m].part.groups for m in table.models)), found)
+        diagnostics += found.found
     if diagnostics:
         raise TableError(diagnostics)
     texts = {table.name: ir.assemble(table, (done[table.name, m].part for m in table.models)) for table in sought}
@@ -99,7 +105,7 @@ def _end_with_parent() -> None:
     def watch() -> None:
         if parent is not None:
             multiprocessing.connection.wait([parent.sentinel])
-            os._exit(1)
+            _EXIT(1)
 
     threading.Thread(target=watch, daemon=True).start()
 

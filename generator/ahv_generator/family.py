@@ -6,12 +6,14 @@ import contextlib
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 from . import names, units
 from .diagnostics import FamilyError, suggestion
+from .joined import JoinedModel, joined_bases
 from .model import Model
+from .part import Instance
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_texts
 
 if TYPE_CHECKING:
@@ -21,7 +23,7 @@ Equations = Callable[[Model], None]
 _T = TypeVar("_T")
 
 # Sections that every table may have.
-_RESERVED = ("table", "sources", "choices", "validity", "sets")
+_RESERVED = ("table", "sources", "choices", "validity", "sets", "parts", "joined", "emit")
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,10 @@ class ModelSpec:
     build: Equations
     line: int
     audited: bool = False
+    instances: tuple[Instance, ...] = ()
+    """The parts that join it."""
+    of: str | None = None
+    """The model that the parts join, whose tables hold the same."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +93,9 @@ class Family:
         self._declared: list[_Declared] = []
         self._only: tuple[str, ...] = ()
         self._conditions: list[tuple[str, int]] = []
+        # Joined models by what they are made of, and the sections of parts.
+        self._joined: dict[str, str] = {}
+        self._parts: set[str] = set()
 
     def parameters(self, section: str, *parameters: Parameter) -> None:
         """Numbers that a table has in the section `[section]`, in this order."""
@@ -167,12 +176,57 @@ class Family:
         """
         vectors = {"state": states, "input": inputs, "noise": noise, "argument": arguments, "mode": modes}
         bases = {basis: tuple(v) for basis, v in vectors.items() if v or basis in ("state", "input")}
-        fault = names.fault_of_identifier(name)
+        self._check_model(name, title, equations, bases)
+
+        def added(build: Equations) -> Equations:
+            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno, audited)
+            return build
+
+        return added
+
+    def join(self, name: str, title: str, of: str, instances: Sequence[Instance]) -> None:
+        """Add a model that is another one with parts, and what its tables hold besides.
+
+        Raises:
+            FamilyError: when a name is taken, or a part drives what is no input.
+        """
+        base = self.models[of]
+        bases = joined_bases(base.bases, instances)
+        own_sections = [one.section for one in self._declared if one.section not in self._parts]
+        self._joined[name] = of
+        self._parts.update(instance.name for instance in instances)
+        for instance in instances:
+            if instance.name in (*_RESERVED, *(quantity.key for quantity in self._all(Quantity)), *own_sections):
+                raise FamilyError(f"`[{instance.name}]` has a meaning of its own; choose another name for the part")
+            for parameter in map(instance.parameter, instance.part.parameters):
+                self._declare_for(name, instance.name, parameter)
+            for own in (*instance.part.states, *instance.part.inputs):
+                if own.bounds is None:
+                    self._declare_for(name, "validity", instance.variable(own))
+        self._check_model(name, title, base.equations, bases)
+        self.models[name] = replace(
+            base, name=name, title=title, bases=bases, audited=False, instances=tuple(instances), of=of
+        )
+
+    def _declare_for(self, model: str, section: str, what: Parameter | Variable) -> None:
+        """Declare something for one model more; parts of the same name share what they declare."""
+        for at, known in enumerate(self._declared):
+            if known.section == section and known.what == what and known.models:
+                self._declared[at] = replace(known, models=(*known.models, model))
+                return
+        taken = [v.name for v in self._all(Variable)] if isinstance(what, Variable) else self._names()
+        if what.name in taken:
+            raise FamilyError(f"the name `{what.name}` is used twice")
+        self._declared.append(_Declared(section, what, (model,)))
+
+    def _check_model(self, name: str, title: str, equations: str, bases: Mapping[str, tuple[Variable, ...]]) -> None:
+        fault = names.fault_of_model(name)
         if fault is not None:
             raise FamilyError(fault)
         check_texts(title, equations)
-        if not states or not inputs:
-            raise FamilyError(f"the model `{name}` has no {'input' if states else 'state'}; it needs one at least")
+        if not bases["state"] or not bases["input"]:
+            lacks = "input" if bases["state"] else "state"
+            raise FamilyError(f"the model `{name}` has no {lacks}; it needs one at least")
         if name in self.models:
             raise FamilyError(f"the name `{name}` is used twice, for two models")
         variable_names = [variable.name for basis in bases.values() for variable in basis]
@@ -180,12 +234,6 @@ class Family:
         if twice:
             raise FamilyError(f"the name `{twice[0]}` is used twice in the model `{name}`")
         self._check_bounds(name, bases)
-
-        def added(build: Equations) -> Equations:
-            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno, audited)
-            return build
-
-        return added
 
     def _check_bounds(self, model: str, bases: Mapping[str, tuple[Variable, ...]]) -> None:
         """Every state and input has an interval of its dimensions."""
@@ -227,7 +275,11 @@ class Family:
     def build(self, name: str, table: Table) -> Model:
         """Derive one of its models from a table."""
         spec = self.models[name]
-        model = Model(spec.name, spec.title, spec.equations, table, dict(spec.bases))
+        common = (spec.name, spec.title, spec.equations, table, dict(spec.bases))
+        if spec.instances:
+            model: Model = JoinedModel(*common, instances=spec.instances)
+        else:
+            model = Model(*common)
         spec.build(model)
         try:
             model.check()
@@ -236,7 +288,8 @@ class Family:
         return model
 
     def _of(self, models: tuple[str, ...]) -> list[_Declared]:
-        return [one for one in self._declared if not one.models or set(one.models) & set(models)]
+        named = {*models, *(self._joined[model] for model in models if model in self._joined)}
+        return [one for one in self._declared if not one.models or named.intersection(one.models)]
 
     def _all(self, kind: type[_T]) -> list[_T]:
         return [one.what for one in self._declared if isinstance(one.what, kind)]

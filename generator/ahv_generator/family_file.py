@@ -1,28 +1,38 @@
-"""Finding and running the file of a family: one that comes along, by name, or one beside the table, by its path."""
+"""Finding and running the file of a family or a part: one that comes along, or one beside the table."""
 
 from __future__ import annotations
 
 import contextlib
+import inspect
+import os
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import ModuleType
+from typing import NoReturn
 
 from .diagnostics import Diagnostic, FamilyError, TableError, suggestion
 from .expression import ExpressionError
 from .family import Family, Outline
+from .part import Part
+from .schema import Variable
 from .units import UnitError
 
-FOLDER = Path(__file__).parent / "families"
+_HERE = Path(__file__).parent
 
 # Their texts say all that there is to say; of another exception its type is said, too.
 _OURS = (FamilyError, ExpressionError, UnitError)
 
 
+def _refuse_exit(status: int) -> NoReturn:
+    """In the place of `os._exit`, after which nobody could say where it was."""
+    raise FamilyError(f"`os._exit({status})` would end the derivation without a word")
+
+
 class NotFoundError(Exception):
-    """A table names a family that there is not."""
+    """A table names a family or a part that there is not."""
 
     def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message)
@@ -30,14 +40,14 @@ class NotFoundError(Exception):
 
 
 @dataclass(frozen=True)
-class FamilyFile:
-    """The file of a family: as tables and messages name it, and where it is."""
+class SourceFile:
+    """A file of Python: as tables and messages name it, and where it is."""
 
     shown: str
     path: Path
 
-    def family(self, outline: Outline) -> Family:
-        """Run the file, and return its family for a table of this outline.
+    def run(self) -> ModuleType:
+        """Run the file, and return its module.
 
         Nothing is written beside the file, and its folder is not searched for modules.
 
@@ -48,25 +58,19 @@ class FamilyFile:
         try:
             text = self.path.read_bytes()
         except OSError as error:
-            raise NotFoundError(f"cannot read the family `{self.shown}`: {error.strerror}") from error
-        module = ModuleType(f"ahv_family_{self.path.stem}")
+            raise NotFoundError(f"cannot read `{self.shown}`: {error.strerror}") from error
+        module = ModuleType(f"ahv_file_{self.path.stem}")
         module.__file__ = str(self.path)
         with self.faults():
             # Dataclasses of the file look for their module there.
             sys.modules[module.__name__] = module
             exec(compile(text, str(self.path), "exec", dont_inherit=True), module.__dict__)
-            family = getattr(module, "family", None)
-            if callable(family):
-                family = family(outline)
-            if not isinstance(family, Family):
-                message = "the file has no family; state one with `family = Family()`, or with a function `family`"
-                raise FamilyError(message, line=1)
-            family.check()
-        return family
+        return module
 
     @contextlib.contextmanager
     def faults(self) -> Iterator[None]:
         """Report what the family's code raises inside, at its line; what it prints goes to standard error."""
+        leave, os._exit = os._exit, _refuse_exit
         try:
             with contextlib.redirect_stdout(sys.stderr):
                 yield
@@ -74,6 +78,8 @@ class FamilyFile:
             raise
         except (Exception, SystemExit) as error:
             raise TableError([self._fault(error)]) from error
+        finally:
+            os._exit = leave
 
     def _fault(self, error: BaseException) -> Diagnostic:
         message, help_line = str(error), getattr(error, "help", None)
@@ -90,25 +96,86 @@ class FamilyFile:
         return Diagnostic("family", self.shown, (), "key", message, help_line, line)
 
 
-def built_in() -> list[str]:
-    """Names of the families that come along."""
-    return sorted(path.stem for path in FOLDER.glob("*.py") if not path.name.startswith("_"))
+class FamilyFile(SourceFile):
+    """The file of a family."""
+
+    def family(self, outline: Outline) -> Family:
+        """Run the file, and return its family for a table of this outline.
+
+        Raises:
+            NotFoundError: when it cannot be read.
+            TableError: with what it states wrongly.
+        """
+        module = self.run()
+        with self.faults():
+            family = getattr(module, "family", None)
+            if callable(family):
+                family = family(outline)
+            if not isinstance(family, Family):
+                message = "the file has no family; state one with `family = Family()`, or with a function `family`"
+                raise FamilyError(message, line=1)
+            family.check()
+        return family
 
 
-def find(named: object, folder: Path) -> FamilyFile:
+class PartFile(SourceFile):
+    """The file of a part."""
+
+    def part(self) -> tuple[list[str], Callable[[dict[str, Variable]], Part]]:
+        """Run the file, and return the names of what its part joins, and what makes the part of the variables joined.
+
+        Raises:
+            NotFoundError: when it cannot be read.
+            TableError: with what it states wrongly; the same when the part is made.
+        """
+        function = getattr(self.run(), "part", None)
+        with self.faults():
+            if not callable(function):
+                raise FamilyError("the file has no part; state one with a function `part`", line=1)
+            joins = list(inspect.signature(function).parameters)
+
+        def made(joined: dict[str, Variable]) -> Part:
+            with self.faults():
+                part = function(**joined)
+                if not isinstance(part, Part):
+                    raise FamilyError("the function `part` returns no part", line=1)
+            return part
+
+        return joins, made
+
+
+def built_in(kind: str) -> list[str]:
+    """Names of the `families` or the `parts` that come along."""
+    return sorted(path.stem for path in (_HERE / kind).glob("*.py") if not path.name.startswith("_"))
+
+
+def find_family(named: object, folder: Path) -> FamilyFile:
     """The file of the family that a table in `folder` names.
 
     Raises:
         NotFoundError: when no family comes along by that name, or there is no such file.
     """
+    return FamilyFile(*_find(named, folder, "families", "family"))
+
+
+def find_part(named: object, folder: Path) -> PartFile:
+    """The file of the part that a table in `folder` names.
+
+    Raises:
+        NotFoundError: when no part comes along by that name, or there is no such file.
+    """
+    return PartFile(*_find(named, folder, "parts", "part"))
+
+
+def _find(named: object, folder: Path, kind: str, what: str) -> tuple[str, Path]:
     if isinstance(named, str) and named.endswith(".py"):
         if PurePosixPath(named).is_absolute() or Path(named).is_absolute():
             raise NotFoundError(f"`{named}` is not relative to the folder of the table")
         if not (folder / named).is_file():
             raise NotFoundError(f"there is no file `{named}` in the folder of the table")
-        return FamilyFile(named, folder / named)
-    known = built_in()
+        return named, folder / named
+    known = built_in(kind)
     if named not in known:
         help_line = f"{suggestion(str(named), known)}; a file beside the table is named like `pendulum.py`"
-        raise NotFoundError(f"unknown family `{named}`", help_line)
-    return FamilyFile(f"ahv_generator/families/{named}.py", FOLDER / f"{named}.py")
+        raise NotFoundError(f"unknown {what} `{named}`", help_line)
+    return f"ahv_generator/{kind}/{named}.py", _HERE / kind / f"{named}.py"

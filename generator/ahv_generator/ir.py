@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 
-from . import __version__, units
+from . import __version__, emit, units
 from .expression import tree
 from .function import Function, Output
 from .model import Model
@@ -33,10 +33,11 @@ class _Text:
 
 @dataclass(frozen=True)
 class Part:
-    """The text of a model in the IR, and every unit in it: what a process can hand to another."""
+    """The text of a model in the IR, every unit in it, and all groups of its functions: what a process can hand on."""
 
     text: str
     units: frozenset[str]
+    groups: frozenset[str]
 
 
 def casadi_version() -> str:
@@ -50,9 +51,11 @@ def render(table: Table, models: Iterable[Model]) -> str:
 
 
 def part(m: Model) -> Part:
-    """What the IR says of a model."""
+    """What the IR says of a model, which loses what its table does not want emitted."""
+    groups = emit.groups_of(m)
+    emit.narrow(m, m.table.emitted)
     spelling = _spelling(m)
-    return Part(_dump(_model(m, spelling), 2), frozenset(spelling.values()))
+    return Part(_dump(_model(m, spelling), 2), frozenset(spelling.values()), groups)
 
 
 def _spelling(m: Model) -> dict[str, str]:
@@ -72,6 +75,7 @@ def assemble(table: Table, parts: Iterable[Part]) -> str:
         "provenance": {"table": table.name, "generator": __version__, "casadi": casadi_version()},
         "units": _units(table, parts),
         "choices": [_choice(c) for c in table.schema.choices],
+        "joins": [_Line(list(join)) for join in table.joins],
         "sets": [{"name": s.name, "parameters": [_Line(_replacement(p)) for p in s.parameters]} for s in table.sets],
         "parameters": [
             _Line(_parameter(p) | {"kind": p.kind, "models": table.only_for(*p.path)}) for p in table.parameters

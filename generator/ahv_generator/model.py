@@ -157,9 +157,7 @@ class Model:
         name = name or spec.key.lower()
         polynomial = polynomial or self.table.polynomials[spec.key]
         symbols = self.fit_symbols(variables or {})
-        for variable in spec.variables:
-            if variable not in symbols:
-                symbols[variable] = self[variable]
+        symbols |= {variable: self.seen(variable, symbols.get(variable)) for variable in spec.variables}
         if collect is None or not (slope := polynomial.linear_part(collect.name)).terms:
             expr = polynomial.expression(symbols)
         else:
@@ -175,6 +173,14 @@ class Model:
             rest = polynomial.without_linear(collect.name).expression(symbols)
             expr = per_variable * symbols[collect.name] + rest
         return self.define(name, expr, spec.symbol, spec.unit, spec.doc, equation=equation)
+
+    def seen(self, named: Named, value: ca.SX | None = None) -> ca.SX:
+        """A state as curve fits see it: with what parts add to it, such as the incidence of a gust.
+
+        A derived variable of curve fits is written in it. Without such a part it is the state itself, or `value` in
+        its place.
+        """
+        return self[named] if value is None else value
 
     def fit_symbols(self, variables: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
         """What a polynomial is written in: quantities and coefficients by name, and the given variables."""

@@ -26,9 +26,10 @@ models, its trim problem, its modes. It is one Python file with a variable `fami
         model.outputs("potential")
         model.trim(given=[Given(position, 0.0)], sought=[Sought(force)], equations=[Equation(rate)])
 
-Units are products of powers of `ft slug lb s rad deg` or `m kg N s rad deg` (`slug*ft^2`, `(ft*slug)^0.5/s`), `1` for
-a pure number; a family may state its units in either system, a table its values in the one that it names. Expressions
-are CasADi scalars. Their dimensions are checked where they are named, and a fault is reported with the file and line.
+Units are products of powers of `ft slug lb s rad deg K` or `m kg N s rad deg K` (`slug*ft^2`, `(ft*slug)^0.5/s`),
+`1` for a pure number; a family may state its units in either system, a table its values in the one that it names.
+Expressions are CasADi scalars. Their dimensions are checked where they are named, and a fault is reported with file and
+line.
 """
 
 from __future__ import annotations
@@ -36,10 +37,12 @@ from __future__ import annotations
 import casadi
 from casadi import asin, atan, atan2, cos, exp, fmax, fmin, if_else, log, sin, sqrt, tan, tanh
 
+from .atmosphere import EXPONENTIAL, US_1976, Air, exponential_density, us_standard_atmosphere_1976
 from .diagnostics import FamilyError
 from .family import Family, Outline
 from .function import Entry, Output
 from .model import Gains, Model, Rates
+from .part import Part, PartModel
 from .schema import (
     NOT_NEGATIVE,
     NOT_ZERO,
@@ -66,9 +69,12 @@ def select(condition: Expr, then: Expr | float, otherwise: Expr | float) -> Expr
 
 
 __all__ = [
+    "EXPONENTIAL",
     "NOT_NEGATIVE",
     "NOT_ZERO",
     "POSITIVE",
+    "US_1976",
+    "Air",
     "Choice",
     "Entry",
     "Equation",
@@ -82,6 +88,8 @@ __all__ = [
     "Outline",
     "Output",
     "Parameter",
+    "Part",
+    "PartModel",
     "Quantity",
     "Rates",
     "Rule",
@@ -92,6 +100,7 @@ __all__ = [
     "atan2",
     "cos",
     "exp",
+    "exponential_density",
     "fmax",
     "fmin",
     "log",
@@ -101,4 +110,5 @@ __all__ = [
     "switch",
     "tan",
     "tanh",
+    "us_standard_atmosphere_1976",
 ]

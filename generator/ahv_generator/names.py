@@ -21,6 +21,9 @@ _CONSTANTS = frozenset(
 # So end the constants of the functions' compressed outputs, which no set's may: what these are called, the models say.
 _OF_FUNCTIONS = "_pattern"
 
+# Files are named after tables and models; file systems end names at 255 bytes, with what is added to them.
+_LONGEST = 64
+
 SET_NAME = re.compile(r"[a-z][a-z0-9._-]*")
 SET_LETTERS = "lower-case letters, digits, `.`, `_`, `-`"
 
@@ -30,6 +33,17 @@ def fault_of_identifier(name: object) -> str | None:
     if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
         return f"`{name}` is not a lower-case identifier: letters a to z, digits, `_`"
     return f"`{name}` is a keyword of Rust; choose another name" if name in _KEYWORDS else None
+
+
+def fault_of_model(name: object) -> str | None:
+    """Why a model cannot have this name."""
+    return fault_of_identifier(name) or _fault_of_length(str(name))
+
+
+def _fault_of_length(name: str) -> str | None:
+    if len(name) > _LONGEST:
+        return f"the name has {len(name)} letters; it names files, and may have {_LONGEST}"
+    return None
 
 
 def fault_of_texts(*texts: str) -> str | None:
@@ -57,7 +71,7 @@ def fault_of_table(name: object) -> str | None:
         return f"`{name}` is a keyword of Rust; choose another name"
     if name == _AUDIT:
         return f"`name` must be other than `{_AUDIT}`, which is the audit of the printed equations"
-    return None
+    return _fault_of_length(name)
 
 
 def constants(name: str) -> frozenset[str]:

@@ -14,26 +14,29 @@ from .model import Model
 _COLUMNS = {"x": "state", "u": "input", "w": "noise", "p": "parameter", "t": "argument"}
 
 
-def expanded(model: Model) -> ca.Function:
-    """All outputs of a model as one CasADi function of its leaves; outputs that are structurally zero are left out."""
+def expanded(model: Model, *, together: bool = False) -> ca.Function:
+    """All outputs of a model as one CasADi function of its leaves; outputs that are structurally zero are left out.
+
+    `together` has the vector of outputs besides, whose entries other functions may have, too.
+    """
     values: dict[str, ca.SX] = {}
     for name, symbol in model.graph.symbols.items():
         quantity = model.graph.quantities.get(name)
         values[name] = symbol if quantity is None else _substituted(quantity.expr, model, values)
     leaves = [name for name in model.graph.symbols if name not in model.graph.quantities]
-    outputs = [_substituted(expr, model, values) for _, expr in _outputs(model)]
+    results = [_substituted(expr, model, values) for _, expr in outputs(model, together=together)]
     return ca.Function(
         model.name,
         [model.graph.symbols[name] for name in leaves],
-        outputs,
+        results,
         [name.replace(".", "_") for name in leaves],
-        [f"y{i}" for i in range(len(outputs))],
+        [f"y{i}" for i in range(len(results))],
     )
 
 
-def labels(model: Model) -> list[str]:
+def labels(model: Model, *, together: bool = False) -> list[str]:
     """Names of the outputs of `expanded`: function, output and entry, joined by dots."""
-    return [label for label, _ in _outputs(model)]
+    return [label for label, _ in outputs(model, together=together)]
 
 
 def columns(model: Model) -> list[str]:
@@ -66,9 +69,10 @@ def _substituted(expr: ca.SX, model: Model, values: dict[str, ca.SX]) -> ca.SX:
     return ca.substitute(expr, ca.vertcat(*inner), ca.vertcat(*(values[s.name()] for s in inner)))
 
 
-def _outputs(model: Model) -> Iterator[tuple[str, ca.SX]]:
+def outputs(model: Model, *, together: bool) -> Iterator[tuple[str, ca.SX]]:
+    """The outputs of `expanded` with their names."""
     for function in model.functions:
-        if function.name.startswith("drift_and_") or function.name == "outputs":
+        if function.name.startswith("drift_and_") or (function.name == "outputs" and not together):
             continue  # the same expressions once more
         for output in function.outputs:
             for entry in output.entries:

@@ -78,7 +78,7 @@ class Variable:
 class Parameter:
     r"""A number that every table of the family has, by its key; `must` is its range.
 
-    The name in the generated code is the key in lower case.
+    The name in the generated code is the key in lower case; before that of a part stands the name of its instance.
 
     >>> mass = Parameter("m", "m", "slug", "vehicle mass", POSITIVE)
     """
@@ -88,6 +88,7 @@ class Parameter:
     unit: str
     doc: str
     must: str | None = None
+    prefix: str = ""
 
     def __post_init__(self) -> None:
         _check_key(self.key, self.unit, self.symbol, self.doc)
@@ -96,7 +97,7 @@ class Parameter:
     @property
     def name(self) -> str:
         """Its name in the generated code."""
-        return self.key.lower()
+        return f"{self.prefix}{self.key}".lower()
 
     def rules(self) -> tuple[Rule, ...]:
         """Its range."""

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from . import family_file, names, units
+from . import emit, family_file, names, units
 from .diagnostics import Faults, TableError, suggestion
 from .entries import Entries, Provenance
 from .family import Family, Outline
 from .family_file import FamilyFile
+from .joins import JOINED, PARTS, Join, Joins
 from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable
 
@@ -54,7 +55,8 @@ class ParameterSet:
 class Table:
     """A checked table: parameters in order, and the polynomial of each quantity.
 
-    `schemas` are what a table of one of the models by itself holds.
+    `schemas` are what a table of one of the models by itself holds. `values` are by paths, `box` is the validity box
+    with angles in rad; `emitted` are the groups of functions that are emitted, None for all.
     """
 
     path: Path
@@ -68,6 +70,10 @@ class Table:
     parameters: tuple[TableParameter, ...]
     polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
+    joins: tuple[Join, ...]
+    emitted: tuple[str, ...] | None
+    values: Mapping[tuple[str, ...], float]
+    box: Mapping[str, tuple[float, float]]
 
     @property
     def audited(self) -> tuple[str, ...]:
@@ -143,16 +149,18 @@ class _Reader:
         self.entries = Entries(document, faults)
         self.header = self.entries.section("table")
         self.parameters: dict[str, TableParameter] = {}
+        self.box: dict[str, tuple[float, float]] = {}
 
     def read(self) -> Table:
         name, system, own_set = self._identity()
         self.entries.system = system
         self._sources()
         file, family = self._family()
+        joins = Joins(self.entries, self.path.parent).read(family)
         models = self._models(family)
         schema = family.schema(models)
         self.known = (*schema.parameters, *(q.key for q in schema.quantities))
-        known = ("table", "sources", CHOICES, "validity", "sets", *self.known)
+        known = ("table", "sources", CHOICES, "validity", "sets", PARTS, JOINED, emit.SECTION, *self.known)
         self.entries.only((), self.document, [k for k in known if k != CHOICES or schema.choices], "section")
         for section, specs in schema.parameters.items():
             self._group(section, specs)
@@ -160,11 +168,28 @@ class _Reader:
             self._choices(schema.choices)
         polynomials = {q.key: _Polynomial(self, q).read() for q in schema.quantities}
         self._validity(schema.validity)
+        emitted = emit.read(self.entries)
         sets = (ParameterSet(own_set, ()), *self._sets(own_set, schema))
         self._rules(schema.rules(), sets)
         schemas = {model: family.schema((model,)) for model in models}
         parameters = tuple(self.parameters.values())
-        return Table(self.path, name, models, system, file, family, schema, schemas, parameters, polynomials, sets)
+        return Table(
+            self.path,
+            name,
+            models,
+            system,
+            file,
+            family,
+            schema,
+            schemas,
+            parameters,
+            polynomials,
+            sets,
+            joins,
+            emitted,
+            self.entries.values,
+            self.box,
+        )
 
     def add(self, parameter: TableParameter) -> None:
         """Takes up a parameter of the table."""
@@ -213,7 +238,7 @@ class _Reader:
         path, named = ("table", "family"), self.header.get("family")
         try:
             if named is not None:
-                file = family_file.find(named, self.path.parent)
+                file = family_file.find_family(named, self.path.parent)
                 return file, file.family(Outline(tuple(self.document)))
         except family_file.NotFoundError as error:
             self.faults.value("unknown-family", path, str(error), error.help)
@@ -297,6 +322,9 @@ class _Reader:
         # An angle may be in degrees here; nothing else is converted.
         expected = units.converted(spec.unit, self.entries.system)
         self.entries.unit(box["unit"], (*path, "unit"), expected, degrees=True)
+        if low is not None and high is not None and not self.faults.found:
+            scale = units.factor(str(box["unit"]), expected)
+            self.box[spec.name] = (low * scale, high * scale)
 
     def _sets(self, own: str, schema: Schema) -> Iterable[ParameterSet]:
         """The sets of `[sets]`."""

@@ -1,4 +1,4 @@
-"""The unit systems of the tables: foot, slug, second, radian; and metre, kilogram, second, radian.
+"""The unit systems of the tables: foot, slug, second, radian; and metre, kilogram, second, radian; kelvin in both.
 
 The radian is a base unit here, so that 1/rad and 1/deg and 1 are told apart in a table.
 Only when the dimensions of an equation are checked does an angle count as a pure number.
@@ -29,6 +29,7 @@ _DEFINITIONS = (
     "slug = [mass]",
     "second = [time] = s",
     "radian = [angle] = rad",
+    "kelvin = [temperature] = K",
     "degree = 0.017453292519943295 * radian = deg",
     "pound_force = slug * foot / second ** 2 = lb",
     f"metre = foot / {_FOOT} = m",
@@ -42,6 +43,7 @@ _SHORT = {
     "second": "s",
     "radian": "rad",
     "degree": "deg",
+    "kelvin": "K",
     "pound_force": "lb",
     "metre": "m",
     "newton": "N",
@@ -51,7 +53,7 @@ _SHORT = {
 _LONG = {short: name for name, short in _SHORT.items()}
 
 # Brackets hold names alone. The reader of `ahv ... --table` has the same grammar; `tests/units.txt` holds for both.
-_NAME = "(?:ft|slug|lb|m|kg|N|s|rad|deg)"
+_NAME = "(?:ft|slug|lb|m|kg|N|s|rad|deg|K)"
 _BASE = rf"1|{_NAME}|\({_NAME}(?:[*/]{_NAME})*\)"
 _EXPONENT = r"(?!0+(?:\.0+)?(?:[*/]|$))[0-9]{1,2}(?:\.[0-9]{1,3})?"  # positive
 _ATOM = rf"(?:{_BASE})(?:\^{_EXPONENT})?"
@@ -66,7 +68,7 @@ _SIZES = {"ft": _FOOT, "lb": _POUND_FORCE, "slug": _POUND_FORCE / _FOOT}
 # Of a unit; no equation has so many.
 _MOST_FACTORS = 32
 
-_KNOWN = "ft, slug, lb, m, kg, N, s, rad, deg"
+_KNOWN = "ft, slug, lb, m, kg, N, s, rad, deg, K"
 
 Dimensions = dict[str, float]
 
@@ -145,7 +147,7 @@ def conversion(text: str, system: str) -> float:
 
 @functools.cache
 def dimensions(text: str) -> Dimensions:
-    """Exponents of length, mass and time; an angle counts as a pure number."""
+    """Exponents of length, mass, time and temperature; an angle counts as a pure number."""
     found = _parse(text).dimensionality
     return {str(k): cast("float", v) * 1.0 for k, v in found.items() if str(k) != "[angle]" and v != 0}
 

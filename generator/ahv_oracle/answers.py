@@ -70,7 +70,7 @@ def _questions(examples: Path) -> Iterator[dict[str, object]]:
         yield question(program, f"simulate --model {model} {CONDITION} {arguments}", answers)
     lifting = PUBLISHED["wang_stengel, elevator lifts"]
     for command, answers in _about_trim(lifting):
-        arguments = f"{command} --model wang_stengel --elevator-lift fitted {CONDITION}"
+        arguments = f"{command} --model wang_stengel --elevator_lift fitted {CONDITION}"
         yield question("wang-stengel", arguments, answers)
     for command, answers in _about_trim(PUBLISHED["parker_canard"]):
         yield question("parker-canard", command, answers)

@@ -118,7 +118,7 @@ def test_no_exception_leaves_as_a_traceback(
     table = tmp_path / "dcom.toml"
     table.write_text((TABLES / "dcom.toml").read_text(encoding="utf-8"), encoding="utf-8")
     monkeypatch.setattr(sys, "argv", ["ahv_generator", "derive", "--out", str(tmp_path), str(table)])
-    monkeypatch.setattr(ir, "part", lambda _: ir.Part("", frozenset()))
+    monkeypatch.setattr(ir, "part", lambda _: ir.Part("", frozenset(), frozenset()))
     monkeypatch.setattr(audit, "render", broken)
     assert main() == 1
     assert re.fullmatch(r"error: OverflowError: too large \(.*\)\n", capsys.readouterr().err)

@@ -18,8 +18,10 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "families.md").read_text(encoding="utf-8")
 EXAMPLE = ROOT / "examples" / "van-der-pol"
 BLOCKS = re.findall(r"(?ms)^```(\w+)\n(.*?)^```$", PAGE)
-PYTHON = [text for kind, text in BLOCKS if kind == "python"]
-TOML = [text for kind, text in BLOCKS if kind == "toml"]
+# A block that begins with the name of its file stands alone.
+ALONE = {text.split()[1]: text for _, text in BLOCKS if text.startswith("# ")}
+PYTHON = [text for kind, text in BLOCKS if kind == "python" and text not in ALONE.values()]
+TOML = [text for kind, text in BLOCKS if kind == "toml" and text not in ALONE.values()]
 GLIDER = "".join(PYTHON[1:-1])
 
 

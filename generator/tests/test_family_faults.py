@@ -54,6 +54,7 @@ CASES = [
     (OMEGA, "1 / 0\n" + OMEGA, "1 / 0", "ZeroDivisionError: division by zero", None),
     (ENERGY, after(ENERGY, "raise ValueError('no such vehicle')"), "raise", "ValueError: no such vehicle", None),
     (OMEGA, "raise SystemExit(3)\n" + OMEGA, "raise", "SystemExit: 3", None),
+    (OMEGA, "import os\nos._exit(3)\n" + OMEGA, "os._exit", "`os._exit(3)` would end the derivation", None),
     (OMEGA, "omega == (\n" + OMEGA, "omega == (", "SyntaxError: '(' was never closed", None),
     (OMEGA, "import sibling\n" + OMEGA, "import sibling", "No module named 'sibling'", "a family is one file"),
     (OMEGA, "from .sibling import x\n" + OMEGA, "from .sibling", "relative import", None),

@@ -1,4 +1,4 @@
-/* Sine, cosine and exponential, from additions and multiplications alone.
+/* Elementary functions, from additions, multiplications and divisions alone.
  *
  * For |angle| <= 1e6 rad and |exponent| <= 708 the operations are those of `ahv-core`, one by one. Beyond, `ahv-core`
  * calls the Rust crate `libm`, which follows FreeBSD's msun. The code for these ranges is written anew so that it
@@ -129,8 +129,8 @@ static void turn(uint64_t quarters, double *sine, double *cosine) {
     *cosine = from_bits((c ^ exchange) ^ sign_cosine);
 }
 
-/* Sine and cosine of a moderate angle. */
-static void reduced_sin_cos(double x, double *sine, double *cosine) {
+/* A moderate angle less a number of quarter turns, as *rest + *low; that number in the low bits. */
+static uint64_t reduced_angle(double x, double *rest, double *low) {
     const double shifted = (x * TWO_OVER_PI) + ROUNDER;
     const double turns = shifted - ROUNDER;
     const double coarse = x - (turns * HALF_PI[0]);
@@ -140,10 +140,19 @@ static void reduced_sin_cos(double x, double *sine, double *cosine) {
     /* Next to a multiple of pi/2 both differences are exact, else what they lose joins the small terms. */
     const double high = middle - low_step;
     const double lost = ((coarse - middle) - step) + ((middle - high) - low_step);
-    const double low = lost - (turns * HALF_PI[3]);
-    const double rest = high + low;
-    kernel(rest, (high - rest) + low, sine, cosine);
-    turn(to_bits(shifted), sine, cosine);
+    const double last = lost - (turns * HALF_PI[3]);
+    *rest = high + last;
+    *low = (high - *rest) + last;
+    return to_bits(shifted);
+}
+
+/* Sine and cosine of a moderate angle. */
+static void reduced_sin_cos(double x, double *sine, double *cosine) {
+    double rest;
+    double low;
+    const uint64_t quarters = reduced_angle(x, &rest, &low);
+    kernel(rest, low, sine, cosine);
+    turn(quarters, sine, cosine);
 }
 
 /* --- Angles above 1e6 rad, rounded as in msun ------------------------------------------------------------------- */
@@ -388,23 +397,39 @@ static void large_angle_sin_cos(double x, double *sine, double *cosine) {
 
 /* --- Exponential ------------------------------------------------------------------------------------------------ */
 
-/* e^x for |x| <= 708. */
-static double moderate_exp(double x) {
-    const double *c = EXP;
+/* 2 to the power of what the low bits hold; those above them fall off. */
+static double power_of_low_bits(uint64_t doublings) {
+    return from_bits((doublings + 1023U) << 52U);
+}
+
+/* A moderate exponent less a number of ln 2, as *rest + *low; that number in the low bits. */
+static uint64_t reduced_exponent(double x, double *rest, double *low) {
     const double shifted = (x * LOG2_E) + ROUNDER;
     const double doublings = shifted - ROUNDER;
     const double high = x - (doublings * LN_2[0]);
     const double step = doublings * LN_2[1];
-    const double r = high - step;
-    const double low = (high - r) - step;
+    *rest = high - step;
+    *low = (high - *rest) - step;
+    return to_bits(shifted);
+}
+
+/* e^r - 1 - r */
+static double exp_tail(double r) {
+    const double *c = EXP;
     const double r_2 = r * r;
     const double r_4 = r_2 * r_2;
     const double first = (c[0] + (c[1] * r)) + (r_2 * (c[2] + (c[3] * r)));
     const double last = ((c[4] + (c[5] * r)) + (r_2 * (c[6] + (c[7] * r)))) + (r_4 * (c[8] + (c[9] * r)));
-    const double p = first + (r_4 * last);
-    const double fraction = 1.0 + (r + (low + (r_2 * p)));
-    /* The low bits hold the exponent; those above them fall off. */
-    return fraction * from_bits((to_bits(shifted) + 1023U) << 52U);
+    return r_2 * (first + (r_4 * last));
+}
+
+/* e^x for |x| <= 708. */
+static double moderate_exp(double x) {
+    double r;
+    double low;
+    const uint64_t doublings = reduced_exponent(x, &r, &low);
+    const double fraction = 1.0 + (r + (low + exp_tail(r)));
+    return fraction * power_of_low_bits(doublings);
 }
 
 /* e^x for |x| > 708, where the result leaves the normal numbers, rounded as in msun. */
@@ -433,6 +458,311 @@ static double extreme_exp(double x) {
     fraction = 1.0 + ((((r * c) / (2.0 - c)) - low) + high);
     /* In two steps: 2^doublings may be no double. Only the second can round. */
     return (fraction * power_of_two(doublings / 2)) * power_of_two(doublings - (doublings / 2));
+}
+
+/* --- Sums of two doubles, for what a result needs beyond the precision of one ------------------------------------- */
+
+typedef struct {
+    double high;
+    double low;
+} Pair;
+
+static Pair exact(double high) {
+    const Pair pair = {high, 0.0};
+    return pair;
+}
+
+/* a + b without an error, for |a| >= |b| or a = 0. */
+static Pair ordered_sum(double a, double b) {
+    Pair sum;
+    sum.high = a + b;
+    sum.low = (a - sum.high) + b;
+    return sum;
+}
+
+/* a + b without an error. */
+static Pair exact_sum(double a, double b) {
+    Pair sum;
+    double back;
+    sum.high = a + b;
+    back = sum.high - a;
+    sum.low = (a - (sum.high - back)) + (b - back);
+    return sum;
+}
+
+/* A number as a sum of two of 26 bits, whose products are exact. */
+static Pair halves(double x) {
+    const double shifted = x * 134217729.0;
+    Pair both;
+    both.high = shifted - (shifted - x);
+    both.low = x - both.high;
+    return both;
+}
+
+/* a * b without an error, for factors below 2^996 and a product that is not tiny. */
+static Pair exact_product(double a, double b) {
+    const Pair of_a = halves(a);
+    const Pair of_b = halves(b);
+    Pair product;
+    product.high = a * b;
+    product.low = (of_a.high * of_b.high) - product.high;
+    product.low = (product.low + (of_a.high * of_b.low)) + (of_a.low * of_b.high);
+    product.low = product.low + (of_a.low * of_b.low);
+    return product;
+}
+
+static Pair negative(Pair a) {
+    const Pair turned = {-a.high, -a.low};
+    return turned;
+}
+
+static Pair plus(Pair a, Pair b) {
+    const Pair sum = exact_sum(a.high, b.high);
+    return ordered_sum(sum.high, sum.low + (a.low + b.low));
+}
+
+static Pair times(Pair a, Pair b) {
+    const Pair product = exact_product(a.high, b.high);
+    const double cross = (a.high * b.low) + (a.low * b.high);
+    return ordered_sum(product.high, product.low + cross);
+}
+
+/* The quotient, its low part as a correction of the high one. */
+static Pair over(Pair a, Pair b) {
+    Pair quotient;
+    Pair back;
+    double rest;
+    quotient.high = a.high / b.high;
+    back = exact_product(quotient.high, b.high);
+    rest = ((a.high - back.high) - back.low) + (a.low - (quotient.high * b.low));
+    quotient.low = rest / b.high;
+    return quotient;
+}
+
+/* --- Tangent and hyperbolic tangent ------------------------------------------------------------------------------- */
+
+/* 2^-30: a smaller angle is its own tangent. */
+static const double TINY_ANGLE = 9.313225746154785e-10;
+
+/* Above, the hyperbolic tangent is 1. */
+static const double LARGEST_OF_TANH = 20.0;
+
+/* (e^r - 1 - r - r^2/2)/r^3 as a polynomial in r for |r| <= ln 2/2; relative error of e^r - 1 2^-60. */
+static const double EXP_LESS_ONE[10] = {
+    0.16666666666666677,   0.04166666666666669,    0.008333333333321695,   0.0013888888888870217,
+    0.00019841269885985402, 2.4801587355967003e-05, 2.755724433650261e-06, 2.7557245702065875e-07,
+    2.510899601613109e-08, 2.0923721907815714e-09,
+};
+
+/* The magnitude of one number with the sign of another. */
+static double with_sign(double size, double sign) {
+    const uint64_t sign_bit = UINT64_C(0x8000000000000000);
+    return from_bits((to_bits(size) & ~sign_bit) | (to_bits(sign) & sign_bit));
+}
+
+/* Sine and cosine of x + low for |x| <= pi/4 and a low far smaller than x, to about 2^-56 of themselves. */
+static void kernel_pairs(double x, double low, Pair *sine, Pair *cosine) {
+    const Pair square = exact_product(x, x);
+    const double x_2 = square.high;
+    const double x_4 = x_2 * x_2;
+    const double half = 0.5 * x_2;
+    const double sin_rest = ((x * x_2) * cubic_pairs(SIN, x_2, x_4)) + (low - (low * half));
+    const Pair main_part = ordered_sum(1.0, -half);
+    const double small = (x_4 * cubic_pairs(COS, x_2, x_4)) - ((x * low) + (0.5 * square.low));
+    *sine = ordered_sum(x, sin_rest);
+    *cosine = ordered_sum(main_part.high, main_part.low + small);
+}
+
+/* The tangent of a moderate angle. */
+static double moderate_tan(double x) {
+    double rest;
+    double low;
+    Pair sine;
+    Pair cosine;
+    Pair quotient;
+    const uint64_t quarters = reduced_angle(x, &rest, &low);
+    kernel_pairs(rest, low, &sine, &cosine);
+    /* A quarter turn makes of the tangent the inverse one, with the other sign. */
+    quotient = ((quarters & 1U) != 0U) ? over(negative(cosine), sine) : over(sine, cosine);
+    return (magnitude(x) < TINY_ANGLE) ? x : (quotient.high + quotient.low);
+}
+
+/* e^x - 1 for 0 <= x <= 40. */
+static Pair exp_less_one(double x) {
+    const double *c = EXP_LESS_ONE;
+    double r;
+    double low;
+    const uint64_t doublings = reduced_exponent(x, &r, &low);
+    const Pair square = exact_product(r, r);
+    const double r_2 = square.high;
+    const double r_4 = r_2 * r_2;
+    const double first = (c[0] + (c[1] * r)) + (r_2 * (c[2] + (c[3] * r)));
+    const double last = ((c[4] + (c[5] * r)) + (r_2 * (c[6] + (c[7] * r)))) + (r_4 * (c[8] + (c[9] * r)));
+    const double p = first + (r_4 * last);
+    const Pair half = ordered_sum(r, 0.5 * r_2);
+    const double rest = half.low + ((0.5 * square.low) + (((r * r_2) * p) + (low + (low * r))));
+    const Pair near_one = ordered_sum(half.high, rest);
+    const double scale = power_of_low_bits(doublings);
+    const Pair scaled = {scale * near_one.high, scale * near_one.low};
+    return plus(exact(scale - 1.0), scaled);
+}
+
+/* --- Inverse tangents and sine ------------------------------------------------------------------------------------ */
+
+/* (atan t - t)/t^3 as a polynomial in t^2 for |t| <= tan(pi/8); relative error of atan t 2^-59. */
+static const double ARC[11] = {
+    -0.3333333333333327,  0.19999999999969428, -0.14285714281496567, 0.1111111083893405,
+    -0.09090899160250497, 0.07692082604182458, -0.0666333588676279,  0.05849443556842783,
+    -0.05045815083558404, 0.03821944304783067, -0.01806697503803219,
+};
+
+/* tan(pi/8) and tan(3 pi/8): between them the angle is counted from pi/4. */
+static const double MIDDLE[2] = {0.41421356237309503, 2.414213562373095};
+
+/* pi/2, 3 pi/4 and pi; what pi/4 exceeds its double by, and of the others it is as many times this. */
+static const double HALF_TURN_OF_TWO = 1.5707963267948966;
+static const double THREE_QUARTERS_PI = 2.356194490192345;
+static const double WHOLE_PI = 3.141592653589793;
+static const double REST_OF_QUARTER_PI = 3.061616997868383e-17;
+
+/* 2^-250: a smaller tangent is its own angle, and its quotient needs no correction. Above 2^60 the angle is pi/2. */
+static const double TINY_TANGENT = 5.527147875260445e-76;
+static const double LARGEST_TANGENT = 1152921504606846976.0;
+
+/* 2^900, 2^-60, 2^-700 and 2^250. */
+static const double LARGE_SIDE = 8.452712498170644e270;
+static const double SHRINK = 8.673617379884035e-19;
+static const double SMALL_SIDE = 1.90109156629516e-211;
+static const double GROW_SIDE = 1.8092513943330656e75;
+
+/* The polynomial ARC by Estrin's scheme. */
+static double arc_polynomial(double z) {
+    const double *c = ARC;
+    const double z_2 = z * z;
+    const double z_4 = z_2 * z_2;
+    const double first = (c[0] + (c[1] * z)) + (z_2 * (c[2] + (c[3] * z)));
+    const double second = (c[4] + (c[5] * z)) + (z_2 * (c[6] + (c[7] * z)));
+    const double third = (c[8] + (c[9] * z)) + (z_2 * c[10]);
+    return first + (z_4 * (second + (z_4 * third)));
+}
+
+/* The angle of the point (x, y) of the first quadrant; if `is_mirrored` that of (-x, y). */
+static double angle_of(double y, Pair x, int is_mirrored) {
+    const int is_steep = (y > (MIDDLE[1] * x.high)) ? 1 : 0;
+    const int is_middle = (y > (MIDDLE[0] * x.high)) ? 1 : 0;
+    const Pair upright = exact(y);
+    const double sign = (is_mirrored != 0) ? -1.0 : 1.0;
+    double from = (is_mirrored != 0) ? WHOLE_PI : 0.0;
+    double quarters = (is_mirrored != 0) ? 4.0 : 0.0;
+    Pair quotient;
+    Pair main_part;
+    double t;
+    double z;
+    double correction;
+    double rest;
+    if (is_steep != 0) {
+        quotient = over(negative(x), upright);
+        from = HALF_TURN_OF_TWO;
+        quarters = 2.0;
+    } else if (is_middle != 0) {
+        quotient = over(plus(upright, negative(x)), plus(upright, x));
+        from = (is_mirrored != 0) ? THREE_QUARTERS_PI : QUARTER_PI;
+        quarters = (is_mirrored != 0) ? 3.0 : 1.0;
+    } else {
+        quotient = over(upright, x);
+    }
+    t = quotient.high;
+    correction = (magnitude(t) > TINY_TANGENT) ? quotient.low : 0.0;
+    z = t * t;
+    rest = ((t * z) * arc_polynomial(z)) + (correction - (correction * z));
+    main_part = ordered_sum(from, sign * t);
+    return main_part.high + (main_part.low + ((quarters * REST_OF_QUARTER_PI) + (sign * rest)));
+}
+
+/* --- Logarithm and powers ----------------------------------------------------------------------------------------- */
+
+/* (artanh s - s - s^3/3 - s^5/5)/s^7 as a polynomial in s^2 for |s| <= (sqrt 2 - 1)/(sqrt 2 + 1); relative error of
+ * artanh s 2^-69. */
+static const double ARTANH[7] = {
+    0.14285714285714476, 0.11111111110907367,  0.09090909156695835,  0.07692298149609836,
+    0.06667385264202787, 0.058532070065899694, 0.058634603904658064,
+};
+
+/* 1/3 and 1/5 */
+static const Pair THIRD = {0.3333333333333333, 1.850371707708594e-17};
+static const Pair FIFTH = {0.19999999999999998, 1.6653345369377347e-17};
+
+static const double ROOT_OF_TWO = 1.4142135623730951;
+
+/* 2^54 makes a normal number of every subnormal one. */
+static const double GROW = 18014398509481984.0;
+static const double SMALLEST_NORMAL = 2.2250738585072014e-308;
+
+/* The bits of 2^52, whose last ones count units. */
+static const uint64_t COUNTER = UINT64_C(0x4330000000000000);
+static const double COUNTED = 4503599627370496.0;
+
+/* Larger exponents of a power give 0 or infinity. */
+static const double LARGEST_POWER = 1000.0;
+static const double BEYOND = 800.0;
+
+/* The logarithm to about 2^-67 of itself. */
+static Pair logarithm(double x) {
+    const double *c = ARTANH;
+    const int is_subnormal = (x < SMALLEST_NORMAL) ? 1 : 0;
+    const double grown = (is_subnormal != 0) ? (x * GROW) : x;
+    const double lacking = (is_subnormal != 0) ? 1077.0 : 1023.0;
+    const uint64_t bits = to_bits(grown);
+    double doublings = (from_bits(COUNTER | ((bits >> 52U) & 0x7FFU)) - COUNTED) - lacking;
+    double mantissa = from_bits((bits & UINT64_C(0xFFFFFFFFFFFFF)) | UINT64_C(0x3FF0000000000000));
+    Pair s;
+    Pair square;
+    Pair series;
+    Pair half;
+    Pair of_mantissa;
+    Pair of_doublings;
+    double z;
+    double z_2;
+    double polynomial;
+    if (!(x > 0.0) || (to_bits(x) == INFINITY_BITS)) {
+        const double edge = (x == 0.0) ? -from_bits(INFINITY_BITS) : not_a_number();
+        return exact((to_bits(x) == INFINITY_BITS) ? x : edge);
+    }
+    if (mantissa > ROOT_OF_TWO) {
+        mantissa = 0.5 * mantissa;
+        doublings = doublings + 1.0;
+    }
+    /* ln m = 2 artanh((m - 1)/(m + 1)) */
+    s = over(exact(mantissa - 1.0), exact_sum(mantissa, 1.0));
+    square = times(s, s);
+    z = square.high;
+    z_2 = z * z;
+    polynomial = (c[4] + (c[5] * z)) + (z_2 * c[6]);
+    polynomial = ((c[0] + (c[1] * z)) + (z_2 * (c[2] + (c[3] * z)))) + ((z_2 * z_2) * polynomial);
+    series = times(square, plus(FIFTH, exact(z * polynomial)));
+    series = times(square, plus(THIRD, series));
+    half = plus(s, times(s, series));
+    of_mantissa.high = 2.0 * half.high;
+    of_mantissa.low = 2.0 * half.low;
+    of_doublings.high = doublings * LN_2[0];
+    of_doublings.low = doublings * LN_2[1];
+    return plus(of_doublings, of_mantissa);
+}
+
+/* e to the power high + low, also where it leaves the normal numbers. */
+static double exp_of_sum(double high, double low) {
+    const double below = (high > BEYOND) ? BEYOND : high;
+    const double moderate = (below < -BEYOND) ? -BEYOND : below;
+    double r;
+    double lost;
+    const uint64_t doublings = reduced_exponent(moderate, &r, &lost);
+    /* The low part may be as large as the last bit of `high`. */
+    const Pair rest = ordered_sum(r, lost + low);
+    const Pair main_part = ordered_sum(1.0, rest.high);
+    const double fraction = main_part.high + (main_part.low + (exp_tail(rest.high) + rest.low));
+    /* In two steps, of which only the second can round. */
+    const uint64_t half = (((doublings + 2048U) & 0xFFFU) >> 1U) - 1024U;
+    return (fraction * power_of_low_bits(half)) * power_of_low_bits(doublings - half);
 }
 
 /* --- What the header offers ------------------------------------------------------------------------------------- */
@@ -482,4 +812,99 @@ double ahv_sqrt(double x) {
 
 double ahv_recip(double x) {
     return 1.0 / x;
+}
+
+double ahv_tan(double angle) {
+    double sine;
+    double cosine;
+    if (magnitude(angle) <= LARGEST_ANGLE) {
+        return moderate_tan(angle);
+    }
+    large_angle_sin_cos(angle, &sine, &cosine);
+    return sine / cosine;
+}
+
+double ahv_asin(double x) {
+    const Pair square = exact_product(x, x);
+    Pair rest = ordered_sum(1.0, -square.high);
+    Pair root;
+    Pair back;
+    double missing;
+    rest = ordered_sum(rest.high, rest.low - square.low);
+    root.high = ahv_sqrt(rest.high);
+    back = exact_product(root.high, root.high);
+    missing = ((rest.high - back.high) - back.low) + rest.low;
+    root.low = (root.high == 0.0) ? 0.0 : (missing / (2.0 * root.high));
+    return with_sign(angle_of(magnitude(x), root, 0), x);
+}
+
+double ahv_atan(double x) {
+    const double size = magnitude(x);
+    return with_sign(angle_of((size > LARGEST_TANGENT) ? LARGEST_TANGENT : size, exact(1.0), 0), x);
+}
+
+double ahv_atan2(double y, double x) {
+    const double size_y = magnitude(y);
+    const double size_x = magnitude(x);
+    const double larger = (size_y > size_x) ? size_y : size_x;
+    const int is_mirrored = ((to_bits(x) >> 63U) != 0U) ? 1 : 0;
+    double scale = 1.0;
+    double height;
+    double distance;
+    /* No sum of the two overflows, no correction of a quotient underflows; a number that is lost here is far below the
+     * other. */
+    if (larger > LARGE_SIDE) {
+        scale = SHRINK;
+    } else if (larger < SMALL_SIDE) {
+        scale = GROW_SIDE;
+    }
+    height = size_y * scale;
+    distance = (larger == 0.0) ? 1.0 : (size_x * scale);
+    if ((to_bits(size_y) == INFINITY_BITS) && (to_bits(size_x) == INFINITY_BITS)) {
+        height = 1.0;
+        distance = 1.0;
+    }
+    return with_sign(angle_of(height, exact(distance), is_mirrored), y);
+}
+
+double ahv_tanh(double x) {
+    const double size = magnitude(x);
+    const Pair less_one = exp_less_one(2.0 * ((size > LARGEST_OF_TANH) ? LARGEST_OF_TANH : size));
+    const Pair quotient = over(less_one, plus(less_one, exact(2.0)));
+    return with_sign((size < TINY_ANGLE) ? size : (quotient.high + quotient.low), x);
+}
+
+double ahv_ln(double x) {
+    const Pair found = logarithm(x);
+    return found.high + found.low;
+}
+
+double ahv_powr(double x, double exponent) {
+    const Pair of_base = logarithm(x);
+    const double high = exponent * of_base.high;
+    const Pair product = exact_product(exponent, of_base.high);
+    const double low = product.low + (exponent * of_base.low);
+    return exp_of_sum(high, (magnitude(high) < LARGEST_POWER) ? low : 0.0);
+}
+
+double ahv_abs(double x) {
+    return magnitude(x);
+}
+
+double ahv_select(double x, double bound, double below, double otherwise) {
+    double chosen = not_a_number();
+    if (x < bound) {
+        chosen = below;
+    } else if (x >= bound) {
+        chosen = otherwise;
+    }
+    return chosen;
+}
+
+double ahv_min(double x, double y) {
+    return ahv_select(x, y, x, y);
+}
+
+double ahv_max(double x, double y) {
+    return ahv_select(x, y, y, x);
 }

@@ -64,6 +64,39 @@ double ahv_sin(double angle);
 /* The cosine that `ahv_sin_cos` gives. */
 double ahv_cos(double angle);
 
+/* Tangent of an angle in rad, to less than 1 ulp up to 1e6 rad; beyond, the quotient of sine and cosine. NaN of infinity
+ * and NaN. */
+double ahv_tan(double angle);
+
+/* Inverse sine in rad, from -pi/2 to pi/2, to less than 1 ulp; NaN beyond -1 and 1. */
+double ahv_asin(double x);
+
+/* Inverse tangent in rad, from -pi/2 to pi/2, to less than 1 ulp. */
+double ahv_atan(double x);
+
+/* Angle in rad, from -pi to pi, of the point with the ordinate y and the abscissa x, to less than 1 ulp. */
+double ahv_atan2(double y, double x);
+
+/* Hyperbolic tangent, to less than 1 ulp. */
+double ahv_tanh(double x);
+
+/* Natural logarithm, to less than 1 ulp; minus infinity of zero, NaN below. */
+double ahv_ln(double x);
+
+/* x to a real power, e to the power of `exponent` times the logarithm, to less than 1 ulp: the powr of IEEE 754, NaN
+ * below zero. */
+double ahv_powr(double x, double exponent);
+
+/* Absolute value. */
+double ahv_abs(double x);
+
+/* `below` where x is below `bound`, else `otherwise`; NaN where x or `bound` is. */
+double ahv_select(double x, double bound, double below, double otherwise);
+
+/* The smaller and the larger of two numbers; NaN if one is. */
+double ahv_min(double x, double y);
+double ahv_max(double x, double y);
+
 /* Square root, correctly rounded; NaN below zero, -0 of -0. */
 double ahv_sqrt(double x);
 

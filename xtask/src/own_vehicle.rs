@@ -28,6 +28,8 @@ const PACKAGES: [(&str, &str); 5] = [
 ];
 /// The example of which `ahv new` makes a repository; the program has its name.
 const NEW: &str = "wang-stengel";
+/// The example in turbulence: its README joins a gust, and the program has this name.
+const GUSTY: (&str, &str) = ("gusty-cone", "winged-cone");
 /// The examples whose packages are checked in.
 const CHECKED_IN: [(&str, &[commands::Question]); 2] = [
     ("six-dof", commands::SIX_DOF),
@@ -47,6 +49,12 @@ pub(crate) fn run() -> Result<(), String> {
     let com = tables::com_rigid_alone(&com)?;
     write(&tables_of(&place, "com-rigid-alone").join("own.toml"), &com)?;
     generate(&place, "com-rigid-alone")?;
+    gusty(&place)?;
+    // The tank's table leaves them out.
+    if place.join("made/tank-models/src/tank/hessian.rs").exists() {
+        return Err("error: second derivatives of the tank were emitted".to_owned());
+    }
+    println!("building {PLACE}");
     build(&place)?;
     let answers = Answers::load()?;
     for (program, models, questions) in [
@@ -60,6 +68,7 @@ pub(crate) fn run() -> Result<(), String> {
         ("parker-canard", &["parker_canard"], commands::PARKER_CANARD),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
+        (GUSTY.0, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -107,8 +116,9 @@ fn checked_in(
     questions: &[commands::Question],
     answers: &Answers,
 ) -> Result<(), String> {
+    let folder = shell::root().join("examples").join(example);
     println!("examples/{example}");
-    build(&shell::root().join("examples").join(example))?;
+    build(&folder)?;
     let own = Own::new(example, &shell::target().join("debug"));
     own.answers(questions)?;
     answers.compare(example, &own)
@@ -133,6 +143,21 @@ fn extension(path: &Path) -> Option<&str> {
 /// Where the tables of a package are.
 fn tables_of(place: &Path, package: &str) -> PathBuf {
     place.join(format!("made/tables-of-{package}"))
+}
+
+/// Makes the package of the example with the gust that its README joins.
+fn gusty(place: &Path) -> Result<(), String> {
+    let example = shell::root().join("examples").join(GUSTY.1);
+    let package = format!("{}-models", GUSTY.0);
+    let folder = tables_of(place, &package);
+    let table = tables::joined(
+        &read(&example.join("winged_cone.toml"))?,
+        &read(&example.join("README.md"))?,
+    )?;
+    write(&folder.join("winged_cone.toml"), &table)?;
+    let family = read(&example.join("winged_cone.py"))?;
+    write(&folder.join("winged_cone.py"), &family)?;
+    generate(place, &package)
 }
 
 /// What the documentation tells a stranger to do is what is done here.
@@ -174,12 +199,11 @@ fn generate(place: &Path, package: &str) -> Result<(), String> {
     done.map(drop).map_err(|failure| failure.to_string())
 }
 
-/// Builds all programs of a place, of the versions that the workspace is locked to.
-fn build(place: &Path) -> Result<(), String> {
-    let lock = place.join("Cargo.lock");
+/// Builds a workspace, of the versions that that of this repository is locked to.
+fn build(workspace: &Path) -> Result<(), String> {
+    let lock = workspace.join("Cargo.lock");
     fs::copy(shell::root().join("Cargo.lock"), &lock).map_err(problem("write", &lock))?;
-    println!("building {}", place.display());
-    built(place, &["build", "--quiet"])
+    built(workspace, &["build", "--quiet"])
 }
 
 /// Runs cargo in a workspace of its own; what it compiles must give no warning.

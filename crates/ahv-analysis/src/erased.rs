@@ -106,6 +106,8 @@ pub trait AnyModel: Send + Sync {
     fn inputs(&self) -> Components;
     /// The quantities that people look at.
     fn outputs(&self) -> Components;
+    /// Its Wiener increments.
+    fn increments(&self) -> Components;
     /// Number of its Wiener processes.
     fn channels(&self) -> usize;
     /// How many states are coloured noise.
@@ -117,6 +119,10 @@ pub trait AnyModel: Send + Sync {
     fn drift(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64>;
     /// ∂f/∂x and ∂f/∂u.
     fn jacobians(&self, p: &[f64], x: &[f64], u: &[f64]) -> [DMatrix<f64>; 2];
+    /// ∂f/∂p.
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64>;
+    /// The diffusion G(x, u), with a column for each Wiener process.
+    fn diffusion(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64>;
     /// The quantities that people look at.
     fn output_values(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64>;
     /// As [`crate::trim::trim`].

@@ -1,7 +1,5 @@
 //! The functions of scalars that an expression may call: their names in the IR, which are the methods of `ahv_core::Real`.
 
-use ahv_core::Real;
-
 /// A function of one to four scalars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Call {
@@ -23,9 +21,6 @@ pub(crate) enum Call {
     /// Of a, b, c, d: c where a < b, else d.
     Select,
 }
-
-/// Most arguments of a function.
-pub(crate) const MOST: usize = 4;
 
 impl Call {
     pub(crate) const ALL: [Self; 15] = [
@@ -76,30 +71,9 @@ impl Call {
     /// How many arguments it has.
     pub(crate) const fn arity(self) -> usize {
         match self {
-            Self::Select => MOST,
+            Self::Select => 4,
             Self::Atan2 | Self::Powr | Self::Min | Self::Max => 2,
             _ => 1,
-        }
-    }
-
-    /// Its value; those of the arguments beyond its own are not looked at.
-    pub(crate) fn value<R: Real>(self, [a, b, c, d]: [R; MOST]) -> R {
-        match self {
-            Self::Sin => a.sin(),
-            Self::Cos => a.cos(),
-            Self::Tan => a.tan(),
-            Self::Asin => a.asin(),
-            Self::Atan => a.atan(),
-            Self::Atan2 => a.atan2(b),
-            Self::Exp => a.exp(),
-            Self::Tanh => a.tanh(),
-            Self::Ln => a.ln(),
-            Self::Powr => a.powr(b),
-            Self::Sqrt => a.sqrt(),
-            Self::Abs => a.abs(),
-            Self::Min => a.min(b),
-            Self::Max => a.max(b),
-            Self::Select => a.select(b, c, d),
         }
     }
 }

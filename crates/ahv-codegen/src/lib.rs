@@ -23,11 +23,11 @@ mod c;
 mod call;
 mod docs;
 mod emit;
-mod evaluate;
 mod graph;
 pub mod ir;
 mod manifest;
 mod numbered;
+mod options;
 mod parallel;
 mod rust;
 mod schedule;
@@ -44,10 +44,12 @@ use std::collections::BTreeMap;
 
 pub use ahv_table::{Part, Unreadable};
 pub use c::identifier as c_identifier;
-pub use emit::{AUDIT, Core, Known, Options, Target, emit, emit_again};
+pub use docs::AUDIT;
+pub use emit::{Known, emit, emit_again};
 pub use graph::passes::{Pass, Passes, UnknownPass};
 pub use manifest::{Earlier, Manifest, sha256};
 pub use numbered::{Numbered, numbered};
+pub use options::{Core, Options, Target};
 pub use table::Table;
 
 /// Files by their path relative to the folder of the generated package, with `/` between its parts.

@@ -45,6 +45,15 @@ impl Table {
         self.text.item(path)?.as_str()
     }
 
+    /// The Python files beside the table that it names: that of its family, then those of its parts.
+    pub fn scripts(&self) -> Vec<&str> {
+        let parts = self.text.item(&["parts"]).and_then(Item::as_table_like);
+        let parts = parts.into_iter().flat_map(|parts| parts.iter());
+        let family = self.text(&["table", "family"]).into_iter();
+        let named = family.chain(parts.filter_map(|(_, part)| part.get("part")?.as_str()));
+        named.filter(|name| name.ends_with(".py")).collect()
+    }
+
     /// Where the key or the value at a path stands, in bytes; of the nearest enclosing entry where it is missing.
     pub fn span(&self, path: &[&str], part: Part) -> Option<Range<usize>> {
         self.text.span(path, part)

@@ -26,7 +26,7 @@ const STRICT: [&str; 8] = [
 ];
 
 /// The results that `c_elementary/driver.c` writes for each value.
-const RESULTS: [&str; 7] = [
+const RESULTS: [&str; 18] = [
     "exp",
     "sin",
     "cos",
@@ -34,6 +34,17 @@ const RESULTS: [&str; 7] = [
     "cosine of sin_cos",
     "sqrt",
     "recip",
+    "tan",
+    "asin",
+    "atan",
+    "tanh",
+    "ln",
+    "abs",
+    "atan2",
+    "powr",
+    "min",
+    "max",
+    "select",
 ];
 
 const WORD: usize = size_of::<f64>();
@@ -105,7 +116,7 @@ fn program(compiler: &str, flags: &[&str], folder: &Path) -> PathBuf {
     program
 }
 
-fn expected(x: f64) -> [f64; 7] {
+fn expected(x: f64, y: f64) -> [f64; 18] {
     let (sin, cos) = Real::sin_cos(x);
     [
         Real::exp(x),
@@ -115,6 +126,17 @@ fn expected(x: f64) -> [f64; 7] {
         cos,
         Real::sqrt(x),
         Real::recip(x),
+        Real::tan(x),
+        Real::asin(x),
+        Real::atan(x),
+        Real::tanh(x),
+        Real::ln(x),
+        Real::abs(x),
+        Real::atan2(x, y),
+        Real::powr(x, y),
+        <f64 as Real>::min(x, y),
+        <f64 as Real>::max(x, y),
+        Real::select(x, y, 1.0, x),
     ]
 }
 
@@ -142,7 +164,7 @@ fn difference(program: &Path, values: &[f64]) -> Option<String> {
             let mut bytes = vec![0; block.len() * RESULTS.len() * WORD];
             output
                 .read_exact(&mut bytes)
-                .expect("the driver writes seven results for each value");
+                .expect("the driver writes its results for each value");
             found = found.or_else(|| difference_in(block, &bytes));
         }
         found
@@ -153,14 +175,15 @@ fn difference(program: &Path, values: &[f64]) -> Option<String> {
 }
 
 fn difference_in(values: &[f64], bytes: &[u8]) -> Option<String> {
-    for (&x, results) in values.iter().zip(bytes.chunks(RESULTS.len() * WORD)) {
+    let pairs = values.iter().zip(values.iter().rev());
+    for ((&x, &y), results) in pairs.zip(bytes.chunks(RESULTS.len() * WORD)) {
         let results = results.chunks(WORD).map(|word| {
             f64::from_ne_bytes(word.try_into().expect("a chunk has the length of a double"))
         });
-        for ((name, rust), c) in RESULTS.iter().zip(expected(x)).zip(results) {
+        for ((name, rust), c) in RESULTS.iter().zip(expected(x, y)).zip(results) {
             if rust.to_bits() != c.to_bits() && !(rust.is_nan() && c.is_nan()) {
                 return Some(format!(
-                    "{name} at {x:?} ({:#018x}): Rust gives {rust:?} ({:#018x}), C gives {c:?} ({:#018x})",
+                    "{name} at {x:?} ({:#018x}), {y:?}: Rust gives {rust:?} ({:#018x}), C gives {c:?} ({:#018x})",
                     x.to_bits(),
                     rust.to_bits(),
                     c.to_bits()
@@ -232,6 +255,13 @@ fn edges() -> Vec<f64> {
         f64::INFINITY,
         f64::NAN,
         1.0,
+        // Where tangents, inverses and logarithm go other ways.
+        0.414_213_562_373_095_03,
+        2.414_213_562_373_095,
+        std::f64::consts::SQRT_2,
+        20.0,
+        9.313_225_746_154_785e-10,
+        1.152_921_504_606_847e18,
         // The angles at which reductions change.
         FRAC_PI_4,
         1e6,
@@ -270,6 +300,8 @@ fn values(count: usize) -> Vec<f64> {
     let ranges = [
         (-FRAC_PI_4, FRAC_PI_4),
         (-10.0, 10.0),
+        (-1.0, 1.0),
+        (0.0, 10.0),
         (-1e6, 1e6),
         (1e6, 1.7e6),
         (1.6e6, 1e10),
@@ -410,14 +442,19 @@ fn doubles(text: &str) -> BTreeSet<u64> {
 /// A wrong last bit in the coefficient of a high power changes few results: the constants themselves are compared.
 #[test]
 fn constants_are_those_of_rust() {
-    let rust = include_str!("../../ahv-core/src/elementary/double.rs");
-    let constants = rust
-        .split("impl Lane")
-        .next()
-        .expect("constants stand first");
-    let rust = doubles(constants);
+    let files = [
+        include_str!("../../ahv-core/src/elementary/double.rs"),
+        include_str!("../../ahv-core/src/elementary/tangent.rs"),
+        include_str!("../../ahv-core/src/elementary/arc.rs"),
+        include_str!("../../ahv-core/src/elementary/logarithm.rs"),
+    ];
+    let rust: BTreeSet<u64> = files
+        .into_iter()
+        .filter_map(|text| text.split("impl Lane").next())
+        .flat_map(doubles)
+        .collect();
     let c = doubles(include_str!("../templates/c/ahv_elementary.c"));
-    assert!(rust.len() > 20, "the constants are not found");
+    assert!(rust.len() > 60, "the constants are not found");
     let missing: Vec<f64> = rust.difference(&c).copied().map(f64::from_bits).collect();
     assert!(missing.is_empty(), "C lacks {missing:?}");
 }

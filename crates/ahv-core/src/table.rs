@@ -16,6 +16,9 @@ pub struct Table {
     pub entries: &'static [Entry],
     /// What can be chosen by name.
     pub choices: &'static [Choice],
+    /// What `[parts]` and `[joined]` say: section, name, key, and the text that stands there, of a list its texts with
+    /// `, ` between.
+    pub joins: &'static [[&'static str; 4]],
     /// The entries of its validity box.
     pub validity: &'static [Interval],
     /// What its numbers must obey.

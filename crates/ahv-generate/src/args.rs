@@ -15,7 +15,7 @@ const CORE_PATH: &str = "../crates/ahv-core";
 ///
 /// `[workspace.metadata.ahv]` of a Cargo.toml may give --tables, --out, --package, --core-path and --core-workspace.
 ///
-/// Exit code: 0 done (or, with --check, tree and tables agree), 1 they differ, 2 bad input.
+/// Exit code: 0 done (or, with --check, tree and tables agree), 1 they differ or an audit fails, 2 bad input.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// Write nothing; compare the tree on disk with what the tables give
@@ -65,6 +65,11 @@ pub struct Args {
     /// Leave a pass of the emitter out, to see what it does; may be repeated. Such a tree fails --check
     #[arg(long, value_name = "NAME", conflicts_with = "check")]
     pub without_pass: Vec<Pass>,
+
+    /// Then compare the models with 50-digit arithmetic at N random points each
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(conflicts_with_all = ["watch", "from_ir", "json", "units"])]
+    pub audit: Option<u32>,
 
     /// Print the result as JSON
     #[arg(long)]

@@ -76,7 +76,7 @@ pub(crate) fn derive(
     Ok(irs)
 }
 
-fn failure(output: &Output, tables: &Tables) -> Failure {
+pub(crate) fn failure(output: &Output, tables: &Tables) -> Failure {
     if output.status.code() == Some(BAD_TABLES)
         && let Ok(found) = serde_json::from_slice::<Diagnostics>(&output.stdout)
         && !found.diagnostics.is_empty()

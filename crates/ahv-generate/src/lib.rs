@@ -19,6 +19,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod audit;
 mod compare;
 mod derive;
 mod excerpt;
@@ -47,6 +48,7 @@ use std::time::Instant;
 use ahv_codegen::{Options, Passes, Tree};
 
 pub use args::{Args, Language};
+pub use audit::{Evaluate, Values};
 pub use compare::{Difference, Kept, Status};
 pub use failure::{Failure, TableFault};
 pub use project::Project;
@@ -60,7 +62,7 @@ use trust::Trusted;
 
 /// Exit code: done, or tree and tables agree.
 pub const AGREES: u8 = 0;
-/// Exit code of `--check`: tree and tables differ.
+/// Exit code: tree and tables differ, of `--check`; or an error is over the bar, of `--audit`.
 pub const DIFFERS: u8 = 1;
 /// Exit code: bad input, or generation could not do its work. Every file is as it was, or named in the message.
 pub const FAILED: u8 = 2;
@@ -69,7 +71,13 @@ pub const FAILED: u8 = 2;
 /// that is 130 or 143, and temporary files are removed.
 #[must_use]
 pub fn run(args: &Args) -> u8 {
-    match answer(args) {
+    run_with(args, &|_, _| None)
+}
+
+/// As [`run`], in a program into which models are compiled: an audit runs them by `evaluate`.
+#[must_use]
+pub fn run_with(args: &Args, evaluate: Evaluate<'_>) -> u8 {
+    match answer(args, evaluate) {
         Ok(code) => code,
         Err(failure) => {
             complain(&failure.render());
@@ -86,7 +94,7 @@ pub fn listen() -> Result<(), Failure> {
     interrupt::listen().map_err(|error| Failure::new(format!("cannot listen to signals: {error}")))
 }
 
-fn answer(args: &Args) -> Result<u8, Failure> {
+fn answer(args: &Args, evaluate: Evaluate<'_>) -> Result<u8, Failure> {
     listen()?;
     let surroundings = Surroundings::of_process()?;
     if args.watch {
@@ -100,7 +108,8 @@ fn answer(args: &Args) -> Result<u8, Failure> {
         } else {
             complain(&checked.text());
         }
-        Ok(if checked.agrees() { AGREES } else { DIFFERS })
+        let code = if checked.agrees() { AGREES } else { DIFFERS };
+        Ok(code.max(audited(args, &surroundings, evaluate)?))
     } else {
         let generated = generate(args, &surroundings)?;
         print(&if args.json {
@@ -108,8 +117,23 @@ fn answer(args: &Args) -> Result<u8, Failure> {
         } else {
             generated.text()
         })?;
-        Ok(AGREES)
+        audited(args, &surroundings, evaluate)
     }
+}
+
+/// The audit, if it is asked for.
+fn audited(
+    args: &Args,
+    surroundings: &Surroundings,
+    evaluate: Evaluate<'_>,
+) -> Result<u8, Failure> {
+    let Some(points) = args.audit else {
+        return Ok(AGREES);
+    };
+    let project = located(args, surroundings)?;
+    let audited = audit::audit(points, surroundings, &project, evaluate)?;
+    print(audited.text())?;
+    Ok(if audited.is_within { AGREES } else { DIFFERS })
 }
 
 /// Writes to standard error; where that cannot be written, the exit code must do.

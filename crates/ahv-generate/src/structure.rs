@@ -8,15 +8,24 @@ use toml_edit::{Item, TableLike, Value};
 use crate::python;
 
 /// Sections whose numbers are no values of parameters.
-const PLAIN: [&str; 5] = ["table", "sources", "choices", "validity", "sets"];
+const PLAIN: [&str; 7] = [
+    "table", "sources", "choices", "validity", "sets", "parts", "joined",
+];
 
 /// Hash of the structure of a table: of its file's name, and of everything in it but the values of parameters, of the sets
-/// too, and the bounds of the box; and of the file of its family, where that is one beside it. The order of entries counts,
+/// too, and the bounds of the box; and of the files of its family and its parts, where they are beside it. The order of entries counts,
 /// comments and layout of the table do not.
-pub(crate) fn of_table(file_name: &str, text: &str, family: &[u8]) -> Result<String, Unreadable> {
+pub(crate) fn of_table(
+    file_name: &str,
+    text: &str,
+    scripts: &[Vec<u8>],
+) -> Result<String, Unreadable> {
     let text = Text::parse(text.to_owned())?;
-    let family = String::from_utf8_lossy(family).replace("\r\n", "\n");
-    let mut shape = format!("{file_name:?}, {family:?}, ");
+    let mut shape = format!("{file_name:?}, ");
+    for script in scripts {
+        let script = String::from_utf8_lossy(script).replace("\r\n", "\n");
+        shape.push_str(&format!("{script:?}, "));
+    }
     table(&mut shape, &mut Vec::new(), text.root());
     Ok(sha256(&shape))
 }
@@ -97,7 +106,7 @@ mod tests {
         [sets.\"x\".C_L]\n\"alpha\" = { value = 1.5, unit = \"1/rad\" }\n";
 
     fn hash(text: &str) -> String {
-        of_table("t.toml", text, b"x = 1").expect("TOML")
+        of_table("t.toml", text, &[b"x = 1".to_vec()]).expect("TOML")
     }
 
     #[track_caller]
@@ -132,9 +141,9 @@ mod tests {
     fn everything_else_counts() {
         let mut found = vec![
             hash(TABLE),
-            of_table("u.toml", TABLE, b"x = 1").expect("TOML"),
+            of_table("u.toml", TABLE, &[b"x = 1".to_vec()]).expect("TOML"),
         ];
-        found.push(of_table("t.toml", TABLE, b"x = 2").expect("TOML"));
+        found.push(of_table("t.toml", TABLE, &[b"x = 2".to_vec()]).expect("TOML"));
         for (from, to) in [
             ("name = \"t\"", "name = \"u\""),
             ("[\"a\", \"b\"]", "[\"b\", \"a\"]"),

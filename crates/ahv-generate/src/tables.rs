@@ -223,21 +223,21 @@ pub(crate) fn table_files(project: &Project) -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
-/// Where the file of a table's family stands, if that is one beside the table.
-pub(crate) fn family_of(path: &Path, table: &[u8]) -> Option<PathBuf> {
-    let text = std::str::from_utf8(table).ok()?;
-    let table = Table::parse("", text).ok()?;
-    let family = table.text(&["table", "family"])?;
-    let folder = path.parent().filter(|_| family.ends_with(".py"))?;
-    Some(folder.join(family))
+/// Where the Python files beside a table stand that it names.
+pub(crate) fn scripts_of(path: &Path, table: &[u8]) -> Vec<PathBuf> {
+    let table = std::str::from_utf8(table).map(|text| Table::parse("", text));
+    let Ok(Ok(table)) = table else {
+        return Vec::new();
+    };
+    let scripts = table.scripts().into_iter();
+    scripts.map(|script| path.with_file_name(script)).collect()
 }
 
-/// The file of a family beside a table; empty for one that comes along, which is hashed with the generator. What cannot be
-/// read is the derivation's to refuse.
-fn family_beside(table: &Path, family: &str) -> Vec<u8> {
-    let file = table.parent().filter(|_| family.ends_with(".py"));
-    file.and_then(|folder| files::read(&folder.join(family)).ok())
-        .unwrap_or_default()
+/// The files of family and parts beside a table; those that come along are hashed with the generator. What cannot be read
+/// is the derivation's to refuse.
+fn scripts_beside(path: &Path, table: &Table) -> Vec<Vec<u8>> {
+    let read = |script| files::read(&path.with_file_name(script)).unwrap_or_default();
+    table.scripts().into_iter().map(read).collect()
 }
 
 /// The text of a table, the table, and the hash of its structure.
@@ -261,8 +261,7 @@ fn parse(
     let file_name = path.file_name().unwrap_or_default().to_string_lossy();
     let read = || {
         let table = Table::parse(&file_name, &text)?;
-        let family = table.text(&["table", "family"]).unwrap_or_default();
-        let structure = structure::of_table(&file_name, &text, &family_beside(path, family))?;
+        let structure = structure::of_table(&file_name, &text, &scripts_beside(path, &table))?;
         Ok((table, structure))
     };
     match read() {

@@ -17,7 +17,7 @@ const SETTLE: Duration = Duration::from_millis(100);
 /// The same where a table has gone: an editor may put it back.
 const SETTLE_WITHOUT: Duration = Duration::from_secs(1);
 
-/// The files of the tables, and of their families beside them, with their bytes; none of a file that cannot be read.
+/// The files of the tables, and of their families and parts beside them, with their bytes; none of a file that cannot be read.
 type Seen = Vec<(PathBuf, Option<Vec<u8>>)>;
 
 /// Generates now and after each change of a table, until a signal.
@@ -69,9 +69,14 @@ fn look(project: &Project) -> Seen {
     let mut seen = Seen::new();
     for path in tables::table_files(project).unwrap_or_default() {
         let bytes = files::read(&path).ok();
-        let family = bytes.as_ref().and_then(|it| tables::family_of(&path, it));
+        let scripts = bytes
+            .as_ref()
+            .map_or_else(Vec::new, |it| tables::scripts_of(&path, it));
         seen.push((path, bytes));
-        seen.extend(family.map(|path| (path.clone(), files::read(&path).ok())));
+        seen.extend(scripts.into_iter().map(|path| {
+            let bytes = files::read(&path).ok();
+            (path, bytes)
+        }));
     }
     seen
 }

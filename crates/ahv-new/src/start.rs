@@ -92,28 +92,46 @@ fn of_file(args: &Args, family: &str, here: &Path) -> Result<Start, Failure> {
         );
         return Err(Failure::new(message));
     }
-    named_by(&table_text, &table_name, &family_name)?;
-    Ok(Start {
-        said: format!("the family `{family_name}`"),
-        files: vec![(table_name, table_text), (family_name, family_text)],
-    })
+    let parts = named_by(&table_text, &table_name, &family_name)?;
+    let said = format!("the family `{family_name}`");
+    let mut files = vec![(table_name, table_text), (family_name, family_text)];
+    for part in parts {
+        let path = table.with_file_name(&part);
+        let text = fs::read_to_string(&path).map_err(Failure::file("read the part", &path))?;
+        files.push((part, text));
+    }
+    Ok(Start { said, files })
 }
 
-/// The table must name the family by a file beside it, for so they lie in the new repository.
-fn named_by(table: &str, table_name: &str, family_name: &str) -> Result<(), Failure> {
+/// The table must name the family by a file beside it, for so they lie in the new repository. Returns the files of parts that
+/// it names.
+fn named_by(table: &str, table_name: &str, family_name: &str) -> Result<Vec<String>, Failure> {
     let document: toml_edit::DocumentMut = table
         .parse()
         .map_err(|error| Failure::new(format!("{table_name}: {error}")))?;
     let header = document.get("table").and_then(|it| it.get("family"));
     let named = header.and_then(toml_edit::Item::as_str);
     if named == Some(family_name) {
-        return Ok(());
+        return Ok(parts(&document));
     }
     let found = named.map_or("no family".to_owned(), |it| format!("the family {it:?}"));
     Err(
         Failure::new(format!("{table_name} names {found}, not {family_name:?}"))
             .with_help(format!("write family = {family_name:?} in [table]")),
     )
+}
+
+/// The files of parts beside the table, each once.
+fn parts(document: &toml_edit::DocumentMut) -> Vec<String> {
+    let parts = document.get("parts").and_then(|it| it.as_table_like());
+    let parts = parts.into_iter().flat_map(|parts| parts.iter());
+    let named = parts.filter_map(|(_, part)| part.get("part")?.as_str());
+    // A path that leads out of the folder is the derivation's to refuse.
+    let beside = named.filter(|file| file.ends_with(".py") && !file.contains(".."));
+    let mut files: Vec<String> = beside.map(str::to_owned).collect();
+    files.sort();
+    files.dedup();
+    files
 }
 
 #[cfg(test)]
@@ -165,7 +183,14 @@ mod tests {
     #[test]
     fn a_table_must_name_its_family() {
         let table = "[table]\nfamily = \"glider.py\"\n";
-        assert!(named_by(table, "glider.toml", "glider.py").is_ok());
+        assert_eq!(
+            named_by(table, "glider.toml", "glider.py").ok(),
+            Some(Vec::new())
+        );
+        let joined = "[table]\nfamily = \"glider.py\"\n[parts]\nelevator = { part = \"servo.py\" }\n\
+            flap = { part = \"servo.py\" }\ngust = { part = \"dryden\" }\n";
+        let parts = named_by(joined, "glider.toml", "glider.py").ok();
+        assert_eq!(parts, Some(vec!["servo.py".to_owned()]));
         let failure = named_by(table, "glider.toml", "kite.py").expect_err("another");
         assert!(
             failure

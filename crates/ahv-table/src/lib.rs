@@ -28,6 +28,7 @@
 mod entries;
 mod fault;
 mod header;
+mod joins;
 mod monomial;
 mod names;
 mod reader;

@@ -12,6 +12,9 @@ const KEYWORDS: &str = " abstract as async await become box break const continue
 const CONSTANTS: &str = " nominal provenance sets unit_system validity state_bounds input_bounds noise_class \
     noise_commutes table ";
 
+/// Files are named after tables; file systems end names at 255 bytes, with what is added to them.
+const LONGEST_TABLE: usize = 64;
+
 /// So end the constants of the functions' compressed outputs.
 const OF_FUNCTIONS: &str = "_pattern";
 
@@ -21,7 +24,12 @@ pub(crate) const SET_LETTERS: &str = "lower-case letters, digits, `.`, `_`, `-`"
 pub(crate) fn fault_of_table(name: Option<&str>) -> Option<String> {
     match name {
         Some(name) if is_word(name, "_") => {
-            if listed(KEYWORDS, name) {
+            let letters = name.len();
+            if letters > LONGEST_TABLE {
+                Some(format!(
+                    "the name has {letters} letters; it names files, and may have {LONGEST_TABLE}"
+                ))
+            } else if listed(KEYWORDS, name) {
                 Some(format!(
                     "`{name}` is a keyword of Rust; choose another name"
                 ))

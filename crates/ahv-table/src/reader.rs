@@ -5,6 +5,7 @@ use toml_edit::Item;
 
 use crate::entries::{Entries, shown};
 use crate::fault::{shortened, suggestion};
+use crate::joins::{JOINED, PARTS};
 use crate::monomial::powers;
 use crate::{Checked, Family, Fault, Quantity, Set, unit};
 
@@ -14,6 +15,8 @@ pub(crate) const SOURCES: &str = "sources";
 const CHOICES: &str = "choices";
 const VALIDITY: &str = "validity";
 pub(crate) const SETS: &str = "sets";
+/// What is emitted is decided when the models are generated.
+const EMIT: &str = "emit";
 const BOX_KEYS: [&str; 3] = ["min", "max", "unit"];
 
 /// Advice for what the models of the package do not have.
@@ -25,7 +28,7 @@ pub(crate) struct Reader<'a> {
     pub(crate) entries: Entries<'a>,
     pub(crate) family: Family,
     pub(crate) table: &'static Table,
-    models: Vec<&'static str>,
+    pub(crate) models: Vec<&'static str>,
     /// The sections of the entries, in order, and whether they hold coefficients.
     pub(crate) sections: Vec<(&'static str, bool)>,
     /// Key of each entry as the table has it.
@@ -58,7 +61,9 @@ impl<'a> Reader<'a> {
     pub(crate) fn read(mut self, own_set: String) -> Result<Checked, Vec<Fault>> {
         let choices = self.table.choices.iter();
         let choices: Vec<&Choice> = choices.filter(|it| self.has_choice(it)).collect();
-        let mut known = vec![HEADER, SOURCES, CHOICES, VALIDITY, SETS];
+        let mut known = vec![
+            HEADER, SOURCES, CHOICES, VALIDITY, SETS, PARTS, JOINED, EMIT,
+        ];
         known.retain(|name| *name != CHOICES || !choices.is_empty());
         known.extend(self.sections.iter().map(|(name, _)| name));
         let root = self.entries.text.root();
@@ -69,6 +74,7 @@ impl<'a> Reader<'a> {
                 false => self.group(section),
             }
         }
+        self.joins();
         let choices = self.choices(&choices);
         let validity = self.validity();
         let further = self.sets(&own_set);

@@ -1,23 +1,24 @@
 //! Units of measurement as tables write them.
 
-/// A unit: powers of length, mass, time and angle, and its size in metre, kilogram, second and radian.
+/// A unit: powers of length, mass, time, angle and temperature, and its size in metre, kilogram, second, radian and kelvin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unit {
-    powers: [f64; 4],
+    powers: [f64; 5],
     size: f64,
 }
 
 /// The units by name.
-const KNOWN: [(&str, [f64; 4], f64); 9] = [
-    ("ft", [1.0, 0.0, 0.0, 0.0], FOOT),
-    ("slug", [0.0, 1.0, 0.0, 0.0], SLUG),
-    ("lb", [1.0, 1.0, -2.0, 0.0], POUND),
-    ("m", [1.0, 0.0, 0.0, 0.0], 1.0),
-    ("kg", [0.0, 1.0, 0.0, 0.0], 1.0),
-    ("N", [1.0, 1.0, -2.0, 0.0], 1.0),
-    ("s", [0.0, 0.0, 1.0, 0.0], 1.0),
-    ("rad", [0.0, 0.0, 0.0, 1.0], 1.0),
-    ("deg", [0.0, 0.0, 0.0, 1.0], Unit::DEGREE),
+const KNOWN: [(&str, [f64; 5], f64); 10] = [
+    ("ft", [1.0, 0.0, 0.0, 0.0, 0.0], FOOT),
+    ("slug", [0.0, 1.0, 0.0, 0.0, 0.0], SLUG),
+    ("lb", [1.0, 1.0, -2.0, 0.0, 0.0], POUND),
+    ("m", [1.0, 0.0, 0.0, 0.0, 0.0], 1.0),
+    ("kg", [0.0, 1.0, 0.0, 0.0, 0.0], 1.0),
+    ("N", [1.0, 1.0, -2.0, 0.0, 0.0], 1.0),
+    ("s", [0.0, 0.0, 1.0, 0.0, 0.0], 1.0),
+    ("rad", [0.0, 0.0, 0.0, 1.0, 0.0], 1.0),
+    ("deg", [0.0, 0.0, 0.0, 1.0, 0.0], Unit::DEGREE),
+    ("K", [0.0, 0.0, 0.0, 0.0, 1.0], 1.0),
 ];
 
 /// Of one unit, as the generator has it.
@@ -55,7 +56,7 @@ pub(crate) fn in_si(mut text: &str) -> String {
 
 impl Unit {
     const ONE: Self = Self {
-        powers: [0.0; 4],
+        powers: [0.0; 5],
         size: 1.0,
     };
 
@@ -86,10 +87,10 @@ impl Unit {
     }
 
     fn times(self, other: Self) -> Self {
-        let [a, b, c, d] = self.powers;
-        let [e, f, g, h] = other.powers;
+        let [a, b, c, d, j] = self.powers;
+        let [e, f, g, h, k] = other.powers;
         Self {
-            powers: [a + e, b + f, c + g, d + h],
+            powers: [a + e, b + f, c + g, d + h, j + k],
             size: self.size * other.size,
         }
     }

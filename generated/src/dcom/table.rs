@@ -161,6 +161,7 @@ pub const TABLE: Table = Table {
             ],
         ),
     ],
+    joins: &[],
     validity: &[
         Interval::new("velocity", "ft/s", VALIDITY.velocity, &["velocity"]),
         Interval::new("altitude", "ft", VALIDITY.altitude, &["altitude"]),

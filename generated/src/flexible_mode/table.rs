@@ -40,6 +40,7 @@ pub const TABLE: Table = Table {
             ],
         ),
     ],
+    joins: &[],
     validity: &[
         Interval::new("eta", "(ft*slug)^0.5", VALIDITY.eta, &["eta"]),
         Interval::new("eta_dot", "(ft*slug)^0.5/s", VALIDITY.eta_dot, &["eta_dot"]),

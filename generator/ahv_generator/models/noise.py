@@ -59,7 +59,7 @@ def perturbation_gains(model: Model, rates: Mapping[str, Expr]) -> dict[tuple[st
     """The derivatives of the drift by gamma, alpha and Q, times the intensities of their noise."""
     return {
         (row, column): model.derivative(rates[row], state) * model[column]
-        for row in model.names("state")
+        for row in rates
         for column, state in _PERTURBED.items()
     }
 

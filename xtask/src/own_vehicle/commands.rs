@@ -241,6 +241,31 @@ pub(super) const WANG_STENGEL: &[Question] = &[
     ),
 ];
 
+/// A gust of two states joins the winged cone: at rest it changes no trim, and it drives every member of its own.
+pub(super) const GUSTY_CONE: &[Question] = &[
+    (
+        "trim --model gusty_cone --velocity 15060 --altitude 110000",
+        &[
+            "/converged = true",
+            "/state/alpha ~ 0.031227",
+            "/state/gust_first = 0.0",
+            "/input/delta_e ~ -0.0069454",
+        ],
+    ),
+    (
+        "poles --model gusty_cone",
+        &["#/poles = 9", "/modes/7/name = \"gust\""],
+    ),
+    (
+        "montecarlo --model gusty_cone --members 1000 --t-end 1 --dt 0.01",
+        &["/members = 1000", "/lost = 0", "#/mean = 9"],
+    ),
+    (
+        "montecarlo --model winged_cone --members 16 --t-end 1 --dt 0.01 --disperse",
+        &["/members = 16", "/lost = 0", "#/mean = 7"],
+    ),
+];
+
 /// A program over models of its own, in a folder for what it writes.
 pub(super) struct Own {
     program: PathBuf,

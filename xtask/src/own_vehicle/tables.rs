@@ -18,6 +18,29 @@ pub(super) fn com_rigid_alone(com: &str) -> Result<String, String> {
     Ok(table.to_string())
 }
 
+/// A table with the parts that a page joins in its block of TOML: `models` of the header, entries of `[validity]`, and
+/// sections of their own.
+pub(super) fn joined(table: &str, page: &str) -> Result<String, String> {
+    let block = page
+        .split_once("```toml\n")
+        .and_then(|(_, it)| it.split_once("```"));
+    let (block, _) = block.ok_or("error: the page has no block of TOML")?;
+    let (mut table, block) = (read(table)?, read(block)?);
+    for (name, item) in block.iter() {
+        match name {
+            "models" => drop(inside(&mut table, "table")?.insert(name, item.clone())),
+            "validity" => {
+                let validity = inside(&mut table, name)?;
+                for (name, interval) in item.as_table_like().into_iter().flat_map(|it| it.iter()) {
+                    validity.insert(name, interval.clone());
+                }
+            }
+            _ => drop(table.insert(name, item.clone())),
+        }
+    }
+    Ok(table.to_string())
+}
+
 fn read(text: &str) -> Result<DocumentMut, String> {
     text.parse()
         .map_err(|error| format!("error: a table cannot be read: {error}"))

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::steppers::{self, Advance, DeterministicScheme, StepperError};
 use super::{AnyModel, Components, ParameterValues, values, vector};
@@ -104,6 +104,10 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         Components::of::<f64, M::OutputsOf<f64>>()
     }
 
+    fn increments(&self) -> Components {
+        Components::of::<f64, M::Noise>()
+    }
+
     fn channels(&self) -> usize {
         <M::Noise as Vector<f64>>::LEN
     }
@@ -126,6 +130,23 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
             matrix::<M::State, _>(&by_state),
             matrix::<M::Input, _>(&by_input),
         ]
+    }
+
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64> {
+        let model = M::with_parameters(&vector(p));
+        matrix::<M::ParametersOf<f64>, _>(&model.parameter_jacobian(&vector(x), &vector(u)))
+    }
+
+    fn diffusion(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64> {
+        let (model, x, u) = (model::<M>(p), vector(x), vector(u));
+        let columns = (0..self.channels()).map(|channel| {
+            let unit = M::Noise::from_fn(|index| f64::from(u8::from(index == channel)));
+            DVector::from_vec(values(&model.noise_increment(&x, &u, &unit)))
+        });
+        match columns.collect::<Vec<_>>() {
+            columns if columns.is_empty() => DMatrix::zeros(self.states().len(), 0),
+            columns => DMatrix::from_columns(&columns),
+        }
     }
 
     fn output_values(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {

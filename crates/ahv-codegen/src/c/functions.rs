@@ -4,10 +4,8 @@ use super::print::{Printer, broken, comments};
 use super::types::Types;
 use crate::graph::Kind;
 use crate::ir::capitalised;
-use crate::schedule::given::Stage;
 use crate::schedule::pieces::Group;
-use crate::schedule::program::{Function, Program};
-use crate::schedule::stages;
+use crate::schedule::program::{Function, Program, taken};
 use crate::schedule::tree::{Body, Source, StageKind};
 use crate::shape::Shape;
 use crate::wording::{summary, wrapped};
@@ -31,7 +29,7 @@ pub(super) struct Functions<'a> {
 }
 
 /// An argument: its type with a pointer's star, and its name.
-type Argument = (String, String);
+pub(super) type Argument = (String, String);
 
 impl Functions<'_> {
     /// All functions, each after those that it calls.
@@ -51,7 +49,13 @@ impl Functions<'_> {
         texts
     }
 
-    fn text(&self, name: &str, result: &str, arguments: &[Argument], docs: &[String]) -> Text {
+    pub(super) fn text(
+        &self,
+        name: &str,
+        result: &str,
+        arguments: &[Argument],
+        docs: &[String],
+    ) -> Text {
         let list: Vec<String> = arguments
             .iter()
             .map(|(of, name)| {
@@ -77,7 +81,7 @@ impl Functions<'_> {
         }
     }
 
-    fn model_argument(&self, kind: Kind) -> Argument {
+    pub(super) fn model_argument(&self, kind: Kind) -> Argument {
         let (name, of) = match kind {
             Kind::State => ("x", "State"),
             Kind::Input => ("u", "Input"),
@@ -87,102 +91,24 @@ impl Functions<'_> {
         (format!("const {}{of} *", self.types.own), name.to_owned())
     }
 
-    fn stage_argument(&self, kind: &StageKind) -> Argument {
+    pub(super) fn stage_argument(&self, kind: &StageKind) -> Argument {
         let of = format!("const {}{} *", self.types.own, kind.type_name);
         (of, kind.argument.to_owned())
     }
 
     /// What a body refers to, as arguments.
-    fn taken(&self, uses: impl Fn(Source) -> bool, but: Option<&StageKind>) -> Vec<Argument> {
-        let kinds = [Kind::State, Kind::Input, Kind::Parameter, Kind::Noise];
-        let kinds = kinds.into_iter();
-        let kinds = kinds.filter(|kind| uses(Source::Argument(*kind)));
-        let stages = self.program.stages.iter().map(|stage| stage.kind);
-        let stages = stages.filter(|kind| uses(Source::Stage(kind)) && but != Some(*kind));
-        let arguments = kinds.map(|kind| self.model_argument(kind));
-        arguments
-            .chain(stages.map(|kind| self.stage_argument(kind)))
-            .collect()
-    }
-
-    /// A stage: its parts, and the function that fills it.
-    fn stage(&self, stage: &Stage) -> Vec<Text> {
-        let kind = stage.kind;
-        let own = (
-            format!("{}{} *", self.types.own, kind.type_name),
-            kind.argument.to_owned(),
-        );
-        let is_prepared = *kind == stages::PREPARED;
-        let parameters = (
-            format!("const {}Parameters *", self.types.table),
-            "p".to_owned(),
-        );
-        let arguments = |uses: &dyn Fn(Source) -> bool| {
-            if is_prepared {
-                vec![parameters.clone()]
-            } else {
-                self.taken(uses, Some(kind))
-            }
+    pub(super) fn taken(
+        &self,
+        uses: impl Fn(Source) -> bool,
+        but: Option<&StageKind>,
+    ) -> Vec<Argument> {
+        let argument = |source: Source| match source {
+            Source::Argument(kind) => Some(self.model_argument(kind)),
+            Source::Stage(kind) if but != Some(kind) => Some(self.stage_argument(kind)),
+            Source::Stage(_) | Source::Result => None,
         };
-        let printer = Printer {
-            holds_stages: false,
-        };
-        let (mut texts, mut calls) = (Vec::new(), Vec::new());
-        let is_whole = stage.parts.len() == 1;
-        for (number, part) in (1..).zip(&stage.parts) {
-            let lines = part.statements.iter().flat_map(|it| printer.statement(it));
-            if is_whole {
-                calls.extend(lines);
-                continue;
-            }
-            let name = format!("{}_part_{number}", kind.function);
-            let mut taken = arguments(&|source| part.uses(source));
-            let names: Vec<String> = taken.iter().map(|(_, name)| name.clone()).collect();
-            let names = [names, vec![kind.argument.to_owned()]].concat().join(", ");
-            calls.push(format!("    {}{name}({names});", self.prefix));
-            taken.push(own.clone());
-            let docs = [format!(
-                "Computes a part of {}.",
-                own.0.trim_end_matches(" *")
-            )];
-            texts.push(Text {
-                is_static: true,
-                lines: trimmed(lines.collect()),
-                ..self.text(&name, "void", &taken, &docs)
-            });
-        }
-        let mut taken = if is_prepared {
-            vec![parameters.clone()]
-        } else {
-            let model = [Kind::State, Kind::Input, Kind::Parameter];
-            let mut taken: Vec<Argument> = model.map(|it| self.model_argument(it)).into();
-            let stages = self.program.stages.iter().map(|it| it.kind);
-            let stages = stages.filter(|it| *it != kind && stage.uses(Source::Stage(it)));
-            taken.extend(stages.map(|it| self.stage_argument(it)));
-            taken
-        };
-        let unused = |name: &str| match name {
-            "x" => !stage.uses(Source::Argument(Kind::State)),
-            "u" => !stage.uses(Source::Argument(Kind::Input)),
-            "p" => !stage.uses(Source::Argument(Kind::Parameter)),
-            _ => false,
-        };
-        let unused = taken.iter().filter(|(_, name)| unused(name));
-        let mut lines: Vec<String> = unused
-            .map(|(_, name)| format!("    (void){name};"))
-            .collect();
-        lines.extend(calls);
-        taken.push(own);
-        let docs = if is_prepared {
-            "Computes what depends on parameters alone. Call it once, and again when a parameter changes.".to_owned()
-        } else {
-            format!("Computes the {}.", lower(kind.doc))
-        };
-        texts.push(Text {
-            lines: trimmed(lines),
-            ..self.text(kind.function, "void", &taken, &wrapped(&docs))
-        });
-        texts
+        let taken = taken(uses, &self.program.stages).into_iter();
+        taken.filter_map(argument).collect()
     }
 
     /// The outputs of a function as arguments, and the type that it returns.
@@ -206,8 +132,7 @@ impl Functions<'_> {
 
     /// The arguments that a function takes of the model.
     fn arguments(&self, function: &Function<'_>) -> Vec<Argument> {
-        let parts = function.parts.iter().map(|&it| &self.program.functions[it]);
-        let bodies: Vec<&Function<'_>> = parts.chain([function]).collect();
+        let bodies = self.program.bodies(function);
         let model = [Kind::State, Kind::Input, Kind::Parameter];
         let mut arguments: Vec<Argument> = model.map(|it| self.model_argument(it)).into();
         if bodies
@@ -221,33 +146,8 @@ impl Functions<'_> {
         arguments
     }
 
-    /// The lines that declare and compute the stages of a function.
-    fn stages(&self, positions: &[usize]) -> Vec<String> {
-        let mut lines = Vec::new();
-        for &position in positions {
-            let kind = self.program.stages[position].kind;
-            let of = format!("{}{}", self.types.own, kind.type_name);
-            lines.push(format!("    {of} {};", kind.argument));
-        }
-        for &position in positions {
-            let stage = &self.program.stages[position];
-            let earlier = self.program.stages[..position].iter().map(|it| it.kind);
-            let earlier = earlier.filter(|kind| stage.uses(Source::Stage(kind)));
-            let earlier: String = earlier
-                .map(|kind| format!("&{}, ", kind.argument))
-                .collect();
-            let (name, argument) = (stage.kind.function, stage.kind.argument);
-            lines.push(format!(
-                "    {}{name}(x, u, p, {earlier}&{argument});",
-                self.prefix
-            ));
-        }
-        lines
-    }
-
     fn unused(&self, function: &Function<'_>) -> Vec<String> {
-        let parts = function.parts.iter().map(|&it| &self.program.functions[it]);
-        let bodies: Vec<&Function<'_>> = parts.chain([function]).collect();
+        let bodies = self.program.bodies(function);
         let model = [Kind::State, Kind::Input, Kind::Parameter];
         // Stages, and parts, take all arguments.
         let unused = model.into_iter().filter(|kind| {
@@ -260,7 +160,7 @@ impl Functions<'_> {
 
     /// A function with a body or pieces; and the one that takes stages, where another needs it.
     fn own(&self, function: &Function<'_>) -> Vec<Text> {
-        let from = takes_stages(function);
+        let from = function.takes_stages();
         let printer = Printer {
             holds_stages: !from,
         };
@@ -399,21 +299,11 @@ impl Functions<'_> {
         lines
     }
 
-    fn piece_name(&self, function: &Function<'_>, group: &Group) -> String {
-        format!("{}_by_{}", function.ir.name, group.label)
-    }
-
-    /// The outputs that a piece fills, by position.
+    /// The outputs that a piece fills, as arguments.
     fn targets(&self, function: &Function<'_>, group: &Group) -> Vec<Argument> {
         let (outputs, _) = self.outputs(function);
-        let mut targets = Vec::new();
-        for &entry in &group.entries {
-            let (output, _) = function.locate(entry);
-            if !targets.contains(&outputs[output]) {
-                targets.push(outputs[output].clone());
-            }
-        }
-        targets
+        let targets = function.targets(group).into_iter();
+        targets.map(|output| outputs[output].clone()).collect()
     }
 
     fn piece(&self, function: &Function<'_>, group: &Group, body: &Body) -> Text {
@@ -440,7 +330,7 @@ impl Functions<'_> {
         Text {
             is_static: true,
             lines: trimmed(lines),
-            ..self.text(&self.piece_name(function, group), "void", &arguments, &docs)
+            ..self.text(&function.piece_name(group), "void", &arguments, &docs)
         }
     }
 
@@ -458,7 +348,7 @@ impl Functions<'_> {
                 .into_iter()
                 .map(|(_, name)| name),
         );
-        let name = self.piece_name(function, group);
+        let name = function.piece_name(group);
         broken(&format!("{}{name}({});", self.prefix, names.join(", ")))
     }
 
@@ -478,7 +368,7 @@ impl Functions<'_> {
                 String::new()
             };
             let handed: &[Argument] = if of_part == "double" { &[] } else { own };
-            let call = if takes_stages(part) {
+            let call = if part.takes_stages() {
                 self.call(part, &format!("{}_from", part.ir.name), handed, true)
             } else {
                 let names = self
@@ -496,11 +386,6 @@ impl Functions<'_> {
             ..self.text(&function.ir.name, result, &all, &documentation(function))
         }
     }
-}
-
-/// Whether a function has a form that takes stages.
-fn takes_stages(function: &Function<'_>) -> bool {
-    function.is_part && !function.stages.is_empty()
 }
 
 /// Where an entry stands, and its mirror image.
@@ -539,15 +424,8 @@ fn documentation(function: &Function<'_>) -> Vec<String> {
     docs
 }
 
-fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_lowercase().chain(letters).collect()
-    })
-}
-
 /// Lines without a blank one at the beginning.
-fn trimmed(mut lines: Vec<String>) -> Vec<String> {
+pub(super) fn trimmed(mut lines: Vec<String>) -> Vec<String> {
     while lines.first().is_some_and(String::is_empty) {
         lines.remove(0);
     }

@@ -2,6 +2,7 @@
 
 mod functions;
 mod print;
+mod stages;
 mod types;
 mod words;
 

@@ -1,7 +1,6 @@
 //! The documentation of the generated package: Markdown with formulas, and pictures, from IR and table values.
 
 mod audit;
-mod differences;
 mod equations;
 mod functions;
 mod index;
@@ -10,7 +9,6 @@ mod lines;
 mod model_page;
 mod noise;
 mod passes_page;
-mod search;
 mod sparsity;
 mod subject;
 mod symbol;
@@ -29,6 +27,9 @@ use subject::Subject;
 use crate::ir::Model;
 use crate::schedule::effect::Effect;
 use crate::{EmitError, Tree};
+
+/// Under this name stands, beside the IRs of the tables, the audit of the printed equations.
+pub const AUDIT: &str = "audit";
 
 /// The texts of the templates, for the manifest.
 pub(crate) const TEMPLATES: [&str; 5] = [

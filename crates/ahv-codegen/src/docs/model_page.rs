@@ -2,7 +2,6 @@
 
 use askama::Template;
 
-use super::differences::{self, Differences};
 use super::equations::{self, Section, SymbolRow};
 use super::functions::{self, Costs, FunctionRow};
 use super::latex::Printer;
@@ -29,7 +28,6 @@ struct ModelPage<'a> {
     sections: Vec<Section>,
     feedback: Vec<Captioned>,
     others: Vec<Captioned>,
-    differences: Vec<Differences>,
     noise: Option<Noise>,
     functions: Vec<FunctionRow>,
 }
@@ -67,7 +65,6 @@ pub(super) fn page(
         sections: equations::sections(subject, &printer, &AS_FORMULAS),
         feedback,
         others,
-        differences: differences::of(subject, model)?,
         noise: noise::of(&printer),
         functions: functions::list(model, document, costs),
     })

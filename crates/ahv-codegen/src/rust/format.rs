@@ -125,6 +125,73 @@ mod tests {
         );
     }
 
+    /// The body of a function of this text, formatted.
+    fn body(statements: &str) -> String {
+        let text = format_rust("f.rs", "", &format!("fn f() {{ {statements} }}")).unwrap();
+        let body = text.trim().strip_prefix("fn f() {\n");
+        body.unwrap().trim_end_matches('}').to_owned()
+    }
+
+    #[test]
+    fn what_fits_stands_on_one_line_and_the_rest_breaks_at_sums() {
+        let (long, name) = (
+            "a_value_with_a_long_name",
+            "another_value_with_a_name_as_long",
+        );
+        let one = format!("let x = {long} * {name} + {long} * {name};");
+        assert!(
+            one.len() > 89 && body(&one) == format!("    {one}\n"),
+            "{}",
+            body(&one)
+        );
+        let two = format!("let x = {long} * {name} * {long} + {long} * {name};");
+        let broken = format!("    let x = {long} * {name} * {long}\n        + {long} * {name};\n");
+        assert_eq!(body(&two), broken);
+        let listed = format!("let x = {ADDENDS}(\"{long} * {name}|+ {name}|+ {long} * {name}\");");
+        let lines =
+            format!("    let x = {long} * {name}\n        + {name}\n        + {long} * {name};\n");
+        assert_eq!(body(&listed), lines);
+        let short = format!("let x = {ADDENDS}(\"a|+ b|+ c\");");
+        assert_eq!(body(&short), "    let x = a + b + c;\n");
+    }
+
+    #[test]
+    fn where_a_statement_breaks_depends_on_no_unit() {
+        let (long, name) = (
+            "a_value_with_a_long_name",
+            "another_value_with_a_name_as_long",
+        );
+        let statement = format!("let x = {long} * {name} * {long};");
+        let with = |unit: &str| body(&format!("{statement} {TRAILING}({unit:?});"));
+        let (short, wide) = (with("m"), with("slug^0.5*ft^1.5/s^2/rad^2"));
+        assert_eq!(short.replace(" // m", ""), format!("    {statement}\n"));
+        // A unit without room stands above.
+        assert_eq!(
+            wide,
+            format!("    // slug^0.5*ft^1.5/s^2/rad^2\n    {statement}\n")
+        );
+    }
+
+    #[test]
+    fn heads_imports_and_items_are_filled() {
+        let types: Vec<String> = (0..9).map(|k| format!("ALongTypeName{k}")).collect();
+        let imports = format!("use super::{{{}}};", types.join(", "));
+        let text = format_rust("f.rs", "", &imports).unwrap();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.is_empty()).collect();
+        assert_eq!(lines.len(), 4, "{text}");
+        assert!(
+            lines[1].len() > 100 && lines.iter().all(|line| line.len() <= 120),
+            "{text}"
+        );
+        let call = "let x = [Rule::new(\"a rule with a name\", \"and a reason for it that is long\", Sign::Positive)];";
+        let items = format!("const A: &[Rule] = &{}", &call["let x = ".len()..]);
+        let text = format_rust("f.rs", "", &items).unwrap();
+        assert!(
+            text.contains("for it that is long\", Sign::Positive)"),
+            "{text}"
+        );
+    }
+
     #[test]
     fn text_that_is_not_rust_names_its_file() {
         let error = format_rust("dcom/drift.rs", "", "fn (").unwrap_err();

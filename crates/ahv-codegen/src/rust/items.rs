@@ -8,9 +8,8 @@ use super::print::{statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
 use crate::ir::capitalised;
-use crate::schedule::given::Stage;
 use crate::schedule::pieces::Group;
-use crate::schedule::program::{Function, Program};
+use crate::schedule::program::{Function, Program, taken};
 use crate::schedule::tree::{Body, Expr, Source, StageKind, Statement};
 use crate::shape::Shape;
 use crate::wording::{summary, wrapped};
@@ -80,21 +79,17 @@ pub(super) fn functions(program: &Program<'_>, function: &Function<'_>) -> Vec<F
     items
 }
 
-/// What a body takes: arguments of the model, then stages, as far as it refers to them.
-pub(super) fn taken(uses: impl Fn(Source) -> bool, stages: &[Stage]) -> Vec<(String, String)> {
-    let arguments = [
-        ("x", Kind::State, "State"),
-        ("u", Kind::Input, "Input"),
-        ("p", Kind::Parameter, "Prepared"),
-        ("dw", Kind::Noise, "Noise"),
-    ];
-    let arguments = arguments.into_iter();
-    let arguments = arguments.filter(|(_, kind, _)| uses(Source::Argument(*kind)));
-    let arguments = arguments.map(|(name, _, of)| (name.to_owned(), of.to_owned()));
-    let stages = stages.iter().map(|stage| stage.kind);
-    let stages = stages.filter(|kind| uses(Source::Stage(kind)));
-    let stages = stages.map(|kind| (kind.argument.to_owned(), kind.type_name.to_owned()));
-    arguments.chain(stages).collect()
+/// What a body takes, by name and type.
+pub(super) fn named(taken: &[Source]) -> Vec<(&'static str, &'static str)> {
+    let argument = |source: &Source| match source {
+        Source::Argument(Kind::State) => Some(("x", "State")),
+        Source::Argument(Kind::Input) => Some(("u", "Input")),
+        Source::Argument(Kind::Parameter) => Some(("p", "Prepared")),
+        Source::Argument(Kind::Noise) => Some(("dw", "Noise")),
+        Source::Argument(Kind::Argument) | Source::Result => None,
+        Source::Stage(kind) => Some((kind.argument, kind.type_name)),
+    };
+    taken.iter().filter_map(argument).collect()
 }
 
 /// A function that computes some entries of another.
@@ -107,12 +102,17 @@ fn piece(
     let places = group.entries.iter();
     let places: Vec<_> = places.map(|it| Some(place(function, *it))).collect();
     let statements = placed(body, &places).statements;
-    let targets = targets(function, group).into_iter();
-    let targets = targets.map(|(name, of)| format!("{name}: &mut {of}<R>"));
-    let taken = taken(|source| body.uses(source), &program.stages).into_iter();
-    let taken = taken.map(|(name, of)| format!("{name}: &{of}<R>"));
+    let targets = function.targets(group).into_iter().map(|output| {
+        let of = function.shapes[output].entries();
+        let of = of.map_or_else(String::new, |it| it.name);
+        format!("{}: &mut {of}<R>", result_name(function, output))
+    });
+    let taken = named(&taken(|source| body.uses(source), &program.stages));
+    let taken = taken
+        .into_iter()
+        .map(|(name, of)| format!("{name}: &{of}<R>"));
     FunctionText {
-        name: piece_name(function, group),
+        name: function.piece_name(group),
         docs: wrapped(&format!(
             "Entries of [`{}`]: derivatives by {}.",
             own_name(function),
@@ -126,25 +126,6 @@ fn piece(
         zeros: Zeros::new(),
         outputs: Vec::new(),
     }
-}
-
-fn piece_name(function: &Function<'_>, group: &Group) -> String {
-    format!("{}_by_{}", function.ir.name, group.label)
-}
-
-/// The structs that a piece fills, as arguments.
-fn targets(function: &Function<'_>, group: &Group) -> Vec<(String, String)> {
-    let mut targets = Vec::new();
-    for &entry in &group.entries {
-        let (output, _) = function.locate(entry);
-        let shape = &function.shapes[output];
-        let name = result_name(function, output);
-        let of = shape.entries().map_or_else(String::new, |it| it.name);
-        if !targets.contains(&(name.clone(), of.clone())) {
-            targets.push((name, of));
-        }
-    }
-    targets
 }
 
 fn result_name(function: &Function<'_>, output: usize) -> String {
@@ -179,14 +160,14 @@ fn stage_lines(program: &Program<'_>, positions: &[usize]) -> Vec<String> {
 }
 
 fn call_of_stage(program: &Program<'_>, position: usize) -> String {
-    let stage = &program.stages[position];
-    let mut call = format!("{}(x, u, p", stage.kind.function);
-    for earlier in &program.stages[..position] {
-        if stage.uses(Source::Stage(earlier.kind)) {
-            call += &format!(", &{}", earlier.kind.argument);
-        }
-    }
-    call + ")"
+    let earlier = program.earlier(position).into_iter();
+    let earlier: String = earlier
+        .map(|kind| format!(", &{}", kind.argument))
+        .collect();
+    format!(
+        "{}(x, u, p{earlier})",
+        program.stages[position].kind.function
+    )
 }
 
 /// The value of a function that is a field of its only stage.
@@ -203,8 +184,7 @@ fn field_of_stage(program: &Program<'_>, function: &Function<'_>) -> Option<Stri
 }
 
 fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<String> {
-    let parts = function.parts.iter().map(|&part| &program.functions[part]);
-    let bodies: Vec<&Function<'_>> = parts.chain([function]).collect();
+    let bodies = program.bodies(function);
     let used = |kind: Kind| {
         let by_stages = !function.stages.is_empty() && kind != Kind::Noise;
         by_stages || bodies.iter().any(|it| it.uses(Source::Argument(kind)))
@@ -216,8 +196,9 @@ fn public_arguments(program: &Program<'_>, function: &Function<'_>) -> Vec<Strin
 
 /// The name of the function that takes what is computed once, where there is one.
 pub(super) fn from(function: &Function<'_>) -> Option<String> {
-    let takes = function.is_part && !function.stages.is_empty();
-    takes.then(|| format!("{}_from", own_name(function)))
+    function
+        .takes_stages()
+        .then(|| format!("{}_from", own_name(function)))
 }
 
 fn own_name(function: &Function<'_>) -> String {
@@ -361,20 +342,21 @@ fn call_of_piece(
     group: &Group,
     body: &Body,
 ) -> String {
-    let targets = targets(function, group).into_iter();
-    let targets = targets.map(|(name, _)| format!("&mut {name}"));
+    let targets = function.targets(group).into_iter();
+    let targets = targets.map(|output| format!("&mut {}", result_name(function, output)));
     let by_value = from(function).is_none();
-    let taken = taken(|source| body.uses(source), &program.stages).into_iter();
-    let taken = taken.map(|(name, _)| {
-        let is_stage = program.stages.iter().any(|it| it.kind.argument == name);
-        if is_stage && by_value {
+    let name = |source: &Source| {
+        let (name, _) = *named(&[*source]).first()?;
+        let is_own = by_value && matches!(source, Source::Stage(_));
+        Some(if is_own {
             format!("&{name}")
         } else {
-            name
-        }
-    });
-    let arguments: Vec<String> = targets.chain(taken).collect();
-    format!("{}({});", piece_name(function, group), arguments.join(", "))
+            name.to_owned()
+        })
+    };
+    let taken = taken(|source| body.uses(source), &program.stages);
+    let arguments: Vec<String> = targets.chain(taken.iter().filter_map(name)).collect();
+    format!("{}({});", function.piece_name(group), arguments.join(", "))
 }
 
 fn documentation(function: &Function<'_>) -> Vec<String> {

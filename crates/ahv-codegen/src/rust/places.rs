@@ -19,11 +19,11 @@ pub(super) fn placed(body: &Body, places: &[Option<String>]) -> Body {
             own.entry(name).or_insert(place);
         }
     }
-    let mut statements: Vec<Statement> = body.statements.iter().cloned().collect();
+    let mut statements = body.statements.clone();
     for statement in &mut statements {
         place(statement, &own);
     }
-    if !own.is_empty() || !statements.is_empty() {
+    if !statements.is_empty() {
         statements.push(Statement::Section(String::new()));
     }
     let mut results = Vec::new();
@@ -105,5 +105,43 @@ fn renamed(expr: &Expr, own: &BTreeMap<&str, &str>) -> Expr {
             let factors = factors.iter();
             Expr::Product(factors.map(|(how, it)| (*how, renamed(it, own))).collect())
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rust::print::statement;
+
+    #[test]
+    fn a_result_is_set_where_it_is_computed_and_read_from_there() {
+        let name = |name: &str| Expr::Name(name.to_owned());
+        let minus = |of: &str| Expr::Negative(Box::new(name(of)));
+        let bind = |to: &str, value: Expr| Statement::Let {
+            name: to.to_owned(),
+            value,
+            unit: String::new(),
+        };
+        let body = Body {
+            statements: vec![bind("a", minus("z")), bind("b", minus("a"))],
+            results: vec![name("a"), minus("a"), name("b"), name("a")],
+            numbered: Vec::new(),
+        };
+        let places = ["r.u.v", "r.u.w", "r.v.v", "r.w.w"].map(|it| Some(it.to_owned()));
+        let printed = placed(&body, &places).statements;
+        let printed: Vec<String> = printed.iter().map(statement).collect();
+        let expected = [
+            "r.u.v = -z;",
+            "r.v.v = -r.u.v;",
+            "__section!(\"\");",
+            "r.u.w = -r.u.v;",
+            "r.w.w = r.u.v;",
+        ];
+        assert_eq!(printed, expected);
+        // A dense result stays a value.
+        let places = [Some("r.u.v".to_owned()), None, None, None];
+        let rest = placed(&body, &places).results;
+        let rest: Vec<String> = rest.iter().map(crate::rust::print::expression).collect();
+        assert_eq!(rest, ["-r.u.v", "b", "r.u.v"]);
     }
 }

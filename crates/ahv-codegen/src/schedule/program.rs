@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use super::given::{Given, Stage};
 use super::pieces::{Group, groups, joined, length};
 use super::stages;
-use super::tree::{Body, Source};
+use super::tree::{Body, Source, StageKind};
 use super::{Cost, Prepared, body};
 use crate::EmitError;
 use crate::graph::passes::Passes;
-use crate::graph::{Dag, Id, Node, decay};
+use crate::graph::{Dag, Id, Kind, Node, decay};
 use crate::ir::{self, capitalised};
 use crate::shape::Shape;
 use crate::wording::parameter_doc;
@@ -64,6 +64,28 @@ impl Function<'_> {
             entry -= length;
         }
         (0, 0)
+    }
+
+    /// Whether it has a form that takes stages: what consists of it has them at hand.
+    pub(crate) fn takes_stages(&self) -> bool {
+        self.is_part && !self.stages.is_empty()
+    }
+
+    /// The name of what computes some of its entries.
+    pub(crate) fn piece_name(&self, group: &Group) -> String {
+        format!("{}_by_{}", self.ir.name, group.label)
+    }
+
+    /// The outputs whose entries a piece computes, by position.
+    pub(crate) fn targets(&self, group: &Group) -> Vec<usize> {
+        let outputs = group.entries.iter().map(|&entry| self.locate(entry).0);
+        let mut targets = Vec::new();
+        for output in outputs {
+            if !targets.contains(&output) {
+                targets.push(output);
+            }
+        }
+        targets
     }
 
     /// Whether it refers to a component that stands there.
@@ -188,8 +210,7 @@ impl<'a> Program<'a> {
     /// The operations of a function and of all that it calls.
     fn cost_of_call(&self, function: &Function<'_>) -> Cost {
         let mut cost = Cost::default();
-        let parts = function.parts.iter().map(|&part| &self.functions[part]);
-        for it in parts.chain([function]) {
+        for it in self.bodies(function) {
             cost += it.body.cost();
             it.pieces.iter().for_each(|(_, body)| cost += body.cost());
         }
@@ -197,6 +218,20 @@ impl<'a> Program<'a> {
         let bodies = stages.flat_map(|stage| &stage.parts);
         bodies.for_each(|body| cost += body.cost());
         cost
+    }
+
+    /// The functions whose bodies compute the results of one: its parts, and itself.
+    pub(crate) fn bodies<'f>(&'f self, function: &'f Function<'a>) -> Vec<&'f Function<'a>> {
+        let parts = function.parts.iter().map(|&part| &self.functions[part]);
+        parts.chain([function]).collect()
+    }
+
+    /// The stages that a stage takes.
+    pub(crate) fn earlier(&self, position: usize) -> Vec<&'static StageKind> {
+        let stage = &self.stages[position];
+        let earlier = self.stages[..position].iter().map(|it| it.kind);
+        let taken = earlier.filter(|kind| stage.uses(Source::Stage(kind)));
+        taken.collect()
     }
 
     /// The model's name as people write it.
@@ -262,6 +297,14 @@ fn prepare(
         }
     }
     stage
+}
+
+/// What a body refers to, in the order of arguments: those of the model, then stages.
+pub(crate) fn taken(uses: impl Fn(Source) -> bool, stages: &[Stage]) -> Vec<Source> {
+    let kinds = [Kind::State, Kind::Input, Kind::Parameter, Kind::Noise];
+    let kinds = kinds.into_iter().map(Source::Argument);
+    let stages = stages.iter().map(|stage| Source::Stage(stage.kind));
+    kinds.chain(stages).filter(|source| uses(*source)).collect()
 }
 
 /// For each function the others whose outputs, one after the other, are its own; none where it has outputs of its own.

@@ -16,7 +16,7 @@ const ARTANH: [f64; 7] = [
     0.058634603904658064,
 ];
 
-/// 1/3 and 1/5.
+/// 1/3 and 1/5 as pairs.
 const THIRD: Pair = Pair {
     high: 0.3333333333333333,
     low: 1.850371707708594e-17,

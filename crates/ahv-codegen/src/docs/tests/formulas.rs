@@ -138,3 +138,31 @@ fn functions_have_the_papers_symbols() {
         assert_eq!(paper_symbol(name), latex);
     }
 }
+
+#[test]
+fn functions_are_written_as_people_write_them() {
+    for (expr, latex) in [
+        (r#"["tan", "x.angle"]"#, r"\tan \alpha"),
+        (r#"["asin", "x.angle"]"#, r"\arcsin \alpha"),
+        (r#"["ln", ["+", 1, "p.m"]]"#, r"\ln\left( 1 + m \right)"),
+        (
+            r#"["atan2", "x.speed", ["neg", "p.m"]]"#,
+            r"\operatorname{atan2}\left( V,\, -m \right)",
+        ),
+        (
+            r#"["*", ["abs", ["-", "x.speed", 1]], "p.m"]"#,
+            r"\left| V - 1 \right| m",
+        ),
+        (
+            r#"["powr", ["+", 1, "p.m"], -0.3]"#,
+            r"\left( 1 + m \right)^{-0.3}",
+        ),
+        (r#"["max", "x.speed", 0]"#, r"\max\left( V,\, 0 \right)"),
+        (
+            r#"["select", "u.push", 1, "x.speed", ["*", 2, "p.m"]]"#,
+            r"\begin{cases} V & \phi < 1 \\ 2\, m & \text{else} \end{cases}",
+        ),
+    ] {
+        assert_eq!(printed(expr, 0), latex, "{expr}");
+    }
+}

@@ -1,11 +1,8 @@
-//! Pages, pictures and magnitudes.
+//! Pages and pictures.
 
-use super::super::differences::three_digits;
-use super::super::search::largest;
 use super::super::{Costs, Page, Subject, emit_index, emit_model, emit_table};
-use super::{TABLE, document, read};
-use crate::evaluate::Tape;
-use crate::ir::{Expr, UnitSystem};
+use super::{TABLE, read};
+use crate::ir::UnitSystem;
 use crate::{Table, Tree};
 
 fn pages(text: &str, system: Option<UnitSystem>) -> Tree {
@@ -110,53 +107,6 @@ fn a_changed_value_changes_the_lines_that_print_it() {
         }
     }
     assert_eq!(different, 2);
-}
-
-#[test]
-fn differences_are_largest_where_the_box_says() {
-    let tree = pages(TABLE, None);
-    let page = &tree["docs/small.md"];
-    // s V sin(alpha) with s = 1, V up to 3 and alpha up to 90 deg; the canard is free nowhere here.
-    assert!(
-        page.contains("| $\\Delta f_{V}$ | ft/s^2 | 3.00 |"),
-        "{page}"
-    );
-    assert!(
-        page.contains("$V$ 3.00 ft/s, $\\alpha$ -90.0 deg"),
-        "{page}"
-    );
-    assert!(page.contains("canard = \"slaved\""), "{page}");
-    assert!(!page.contains("canard = \"free\""), "{page}");
-}
-
-#[test]
-fn the_search_finds_a_maximum_inside_the_box() {
-    // x (1 − x) y at x = 1/2, y = 3, and its negative elsewhere.
-    let expr: Expr =
-        serde_json::from_str(r#"["*", "x.a", ["-", 1, "x.a"], "x.b"]"#).expect("an expression");
-    let document = document();
-    let tape = Tape::compile(&document.models[0], [&expr]).expect("a tape");
-    let found = largest(&tape, 1, &[(0.0, 1.0), (-1.0, 3.0)]);
-    assert!((found[0].value - 0.75).abs() < 1e-6, "{found:?}");
-    assert!((found[0].point[0] - 0.5).abs() < 1e-3, "{found:?}");
-    assert_eq!(found, largest(&tape, 1, &[(0.0, 1.0), (-1.0, 3.0)]));
-}
-
-#[test]
-fn numbers_have_three_digits() {
-    for (value, text) in [
-        (0.0, "0"),
-        (1.2345, "1.23"),
-        (-12.345, "-12.3"),
-        (9.999, "10.0"),
-        (0.012345, "0.0123"),
-        (123456.0, "123000"),
-        (-999.9, "-1000"),
-        (1.2345e-7, "1.23e-7"),
-        (1.2345e9, "1.23e9"),
-    ] {
-        assert_eq!(three_digits(value), text);
-    }
 }
 
 #[test]

@@ -37,6 +37,7 @@ pub const TABLE: Table = Table {
         Entry::coefficient("C_M", "tail", "coefficient of tail in C_M"),
     ],
     choices: &[],
+    joins: &[],
     validity: &[
         Interval::new("velocity", "ft/s", VALIDITY.velocity, &["velocity"]),
         Interval::new("altitude", "ft", VALIDITY.altitude, &["altitude"]),
