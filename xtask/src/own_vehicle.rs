@@ -68,7 +68,11 @@ pub(crate) fn run() -> Result<(), String> {
         ("parker-canard", &["parker_canard"], commands::PARKER_CANARD),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
-        (GUSTY.0, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
+        (
+            GUSTY.0,
+            &["winged_cone", "gusty_cone"],
+            commands::GUSTY_CONE,
+        ),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));

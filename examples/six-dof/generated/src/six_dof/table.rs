@@ -77,6 +77,7 @@ pub const TABLE: Table = Table {
         Entry::coefficient("C_N", "r_hat*mach", "coefficient of r_hat*mach in C_N"),
     ],
     choices: &[],
+    joins: &[],
     validity: &[
         Interval::new("velocity", "m/s", VALIDITY.velocity, &["velocity"]),
         Interval::new("alpha", "rad", VALIDITY.alpha, &["alpha"]),
