@@ -83,7 +83,7 @@ pub struct Regulator {
     pub gain: DMatrix<f64>,
     /// X, states × states: the cost from x is xᵀXx.
     pub cost: DMatrix<f64>,
-    /// Eigenvalues of A − B K of the states that the weight sees, in 1/s, rightmost first.
+    /// Eigenvalues of A − B K, in 1/s, rightmost first.
     pub poles: Vec<Complex<f64>>,
     /// Residual of the Riccati equation over the largest of its terms, with every state measured by its weight.
     pub residual: f64,
@@ -114,11 +114,12 @@ impl Regulator {
     /// semidefinite) and R (inputs × inputs, positive definite).
     ///
     /// States that neither have a weight nor act on one that has, such as the position of a vehicle, change no cost: they have no
-    /// gain and no pole here, and move as they are driven.
+    /// gain, keep their poles, and move as they are driven.
     ///
     /// # Errors
     ///
-    /// [`LqrError`]; a regulator is only returned with a residual below 10⁻⁹ and all poles in the left half plane.
+    /// [`LqrError`]; a regulator is only returned with a residual below 10⁻⁹ and all poles that the weight sees in the left half
+    /// plane.
     pub fn new(
         a: &DMatrix<f64>,
         b: &DMatrix<f64>,
@@ -184,12 +185,12 @@ impl Regulator {
         let hidden = (0..a.nrows()).filter(|state| !seen.contains(state));
         let hidden: Vec<usize> = hidden.collect();
         let hidden = a.select_rows(&hidden).select_columns(&hidden);
-        let rounding = OUT_OF_REACH * hidden.norm();
-        let rightmost = eigenvalues(&hidden).into_iter().next();
-        if let Some(Complex { re, im }) = rightmost.filter(|mode| mode.re > rounding) {
+        let modes = eigenvalues(&hidden);
+        let rightmost = modes.first().copied().unwrap_or_default();
+        if rightmost.re > OUT_OF_REACH * hidden.norm() {
             return Err(LqrError::NotDetectable {
-                real: re,
-                imaginary: im,
+                real: rightmost.re,
+                imaginary: rightmost.im,
             });
         }
         let square = |matrix: &DMatrix<f64>| matrix.select_rows(seen).select_columns(seen);
@@ -202,7 +203,13 @@ impl Regulator {
                 cost[(other, state)] = part.cost[(row, column)];
             }
         }
-        Ok(Self { gain, cost, ..part })
+        let poles = [modes, part.poles].concat();
+        Ok(Self {
+            gain,
+            cost,
+            poles: rightmost_first(poles),
+            residual: part.residual,
+        })
     }
 }
 
@@ -281,9 +288,12 @@ fn scales(weight: &DMatrix<f64>) -> DVector<f64> {
 
 /// Eigenvalues, rightmost first.
 fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    let mut eigenvalues = matrix.complex_eigenvalues().as_slice().to_vec();
-    eigenvalues.sort_by(|a, b| b.re.total_cmp(&a.re));
-    eigenvalues
+    rightmost_first(matrix.complex_eigenvalues().as_slice().to_vec())
+}
+
+fn rightmost_first(mut poles: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
+    poles.sort_by(|a, b| b.re.total_cmp(&a.re));
+    poles
 }
 
 /// An eigenvalue of `a` that does not decay and for which [A − λI, B] loses rank (Popov, Belevitch and Hautus).

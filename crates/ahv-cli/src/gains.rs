@@ -103,7 +103,7 @@ impl Vehicle {
             }
         }
         for (name, value) in flight.given() {
-            let (_, value) = shown_as(name, value, self.states.unit(name));
+            let (_, value) = shown_as(name, value, self.unit(name));
             command += &format!(" --{} {value}", name.replace('_', "-"));
         }
         for (name, value) in self.held(flight) {

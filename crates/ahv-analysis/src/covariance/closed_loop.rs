@@ -9,8 +9,10 @@ use crate::linearize::LinearSystem;
 use crate::poles::poles;
 use crate::values::{matrix, vector};
 
+/// States and inputs that most models have at most: the smaller transition is for them.
+const FEW: usize = 16;
 /// States and inputs that a transition is made for.
-const MOST: usize = 16;
+const MOST: usize = 32;
 /// Change in 1 s, relative to 1 or the value, from which a flight is not at rest.
 const REST: f64 = 1e-6;
 /// Least eigenvalue of a matrix of correlations that rounding explains.
@@ -302,24 +304,17 @@ impl Flight {
         finite(model, time, &middle)?;
         let linear = self.linear(model, &middle, at + half);
         implicit(&linear.a)?;
-        let padded = |matrix: &DMatrix<f64>| -> [[f64; MOST]; MOST] {
-            let entry =
-                |row: usize, column: usize| matrix.get((row, column)).copied().unwrap_or(0.0);
-            std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column)))
+        let moved = match size {
+            0..=FEW => transition::<FEW>(&linear.a, &linear.intensity, dt),
+            _ => transition::<MOST>(&linear.a, &linear.intensity, dt),
         };
-        let transition =
-            LinearTransition::<f64, MOST>::new(padded(&linear.a), padded(&linear.intensity), dt)
-                .map_err(|_| CovarianceError::StepTooLong { time, dt })?;
-        let trimmed = |matrix: &[[f64; MOST]; MOST]| {
-            DMatrix::from_fn(size, size, |row, column| matrix[row][column])
-        };
+        let [transition, forced, added] = moved.ok_or(CovarianceError::StepTooLong { time, dt })?;
         let constant = linear.rate + linear.a * (z - &middle);
-        let next = z + trimmed(transition.forced()) * constant;
+        let next = z + forced * constant;
         finite(model, time, &next)?;
         // [Φ L, L_Q] times its transpose is Φ P Φᵀ + Q; the triangle of its QR decomposition is a root of that.
         let mut roots = DMatrix::zeros(2 * size, size);
-        let carried = trimmed(transition.transition()) * root;
-        let added = trimmed(transition.root());
+        let carried = transition * root;
         for (first, part) in [(0, carried), (size, added)] {
             roots
                 .view_mut((first, 0), (size, size))
@@ -416,4 +411,21 @@ fn finite(model: &dyn Point, time: f64, z: &Joint) -> Result<(), CovarianceError
             value,
         }),
     }
+}
+
+/// Φ, what a constant becomes over a step, and a root of what the noise adds; `None` if the step is too long for them.
+fn transition<const N: usize>(
+    a: &DMatrix<f64>,
+    intensity: &DMatrix<f64>,
+    dt: f64,
+) -> Option<[DMatrix<f64>; 3]> {
+    let padded = |matrix: &DMatrix<f64>| -> [[f64; N]; N] {
+        let entry = |row: usize, column: usize| matrix.get((row, column)).copied().unwrap_or(0.0);
+        std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column)))
+    };
+    let found = LinearTransition::<f64, N>::new(padded(a), padded(intensity), dt).ok()?;
+    let size = a.nrows();
+    let trimmed =
+        |matrix: &[[f64; N]; N]| DMatrix::from_fn(size, size, |row, column| matrix[row][column]);
+    Some([found.transition(), found.forced(), found.root()].map(trimmed))
 }

@@ -431,25 +431,56 @@ impl<U: Vector<f64>> StochasticModel for Driven<U> {
     }
 }
 
-/// An input known to σ moves each state by σ t: sixteen states and inputs have it, and seventeen are refused.
+ahv_core::impl_vector! { Eighteen {
+    a: ["1", "1", 1.0], b: ["1", "1", 1.0], c: ["1", "1", 1.0], d: ["1", "1", 1.0], e: ["1", "1", 1.0],
+    f: ["1", "1", 1.0], g: ["1", "1", 1.0], h: ["1", "1", 1.0], i: ["1", "1", 1.0], j: ["1", "1", 1.0],
+    k: ["1", "1", 1.0], l: ["1", "1", 1.0], m: ["1", "1", 1.0], n: ["1", "1", 1.0], o: ["1", "1", 1.0],
+    p: ["1", "1", 1.0], q: ["1", "1", 1.0], r: ["1", "1", 1.0],
+} }
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Eighteen<T> {
+    a: T,
+    b: T,
+    c: T,
+    d: T,
+    e: T,
+    f: T,
+    g: T,
+    h: T,
+    i: T,
+    j: T,
+    k: T,
+    l: T,
+    m: T,
+    n: T,
+    o: T,
+    p: T,
+    q: T,
+    r: T,
+}
+
+/// An input known to σ moves each state by σ t: sixteen, seventeen and thirty states and inputs have it, and 33 are refused.
 #[test]
 fn as_many_states_and_inputs_as_transitions_are_made_for() {
-    let still = vec![0.0; 15];
-    let mut flight = Flight::new(still.clone(), vec![0.0], 0.1);
-    flight.initial[(15, 15)] = 0.04;
-    let spread = flight.covariance(&Driven::<One<f64>>(PhantomData), &[3.0]);
-    for std in spread.expect("a flight")[0].std() {
-        assert_relative_eq!(std, 0.6, max_relative = 1e-12);
+    fn moves<U: Vector<f64>>() -> Result<(), CovarianceError> {
+        let mut flight = Flight::new(vec![0.0; 15], vec![0.0; U::LEN], 0.1);
+        flight.initial[(15, 15)] = 0.04;
+        let spread = flight.covariance(&Driven::<U>(PhantomData), &[3.0])?;
+        for std in spread[0].std() {
+            assert_relative_eq!(std, 0.6, max_relative = 1e-12);
+        }
+        Ok(())
     }
-    let one_more = Flight::new(still, vec![0.0; 2], 0.1);
+
+    assert_eq!(moves::<One<f64>>(), Ok(()));
+    assert_eq!(moves::<Two<f64>>(), Ok(()));
+    assert_eq!(moves::<Fifteen<f64>>(), Ok(()));
     let expected = CovarianceError::TooLarge {
-        found: 17,
-        most: 16,
+        found: 33,
+        most: 32,
     };
-    assert_eq!(
-        one_more.covariance(&Driven::<Two<f64>>(PhantomData), &[3.0]),
-        Err(expected)
-    );
+    assert_eq!(moves::<Eighteen<f64>>(), Err(expected));
 }
 
 /// u̇ = b (−k₁ x − k₂ y − u): the loop comes to rest, and what rests is what a long flight comes to.
