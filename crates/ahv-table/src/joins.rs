@@ -3,10 +3,8 @@
 use toml_edit::Item;
 
 use crate::entries::shown;
-use crate::reader::{GENERATE, Reader};
+use crate::reader::{GENERATE, JOINED, PARTS, Reader};
 
-pub(crate) const PARTS: &str = "parts";
-pub(crate) const JOINED: &str = "joined";
 /// A title is not compared: it changes no number.
 const TITLE: &str = "title";
 

@@ -5,7 +5,6 @@ use toml_edit::Item;
 
 use crate::entries::{Entries, shown};
 use crate::fault::{shortened, suggestion};
-use crate::joins::{JOINED, PARTS};
 use crate::monomial::powers;
 use crate::{Checked, Family, Fault, Quantity, Set, unit};
 
@@ -15,6 +14,9 @@ pub(crate) const SOURCES: &str = "sources";
 const CHOICES: &str = "choices";
 const VALIDITY: &str = "validity";
 pub(crate) const SETS: &str = "sets";
+/// What joins a model, and the models that have it.
+pub(crate) const PARTS: &str = "parts";
+pub(crate) const JOINED: &str = "joined";
 /// What is emitted is decided when the models are generated.
 const EMIT: &str = "emit";
 const BOX_KEYS: [&str; 3] = ["min", "max", "unit"];

@@ -10,9 +10,6 @@ pub(super) const SECTION: &str = "__section!";
 /// A comment at the end of the line before it.
 pub(super) const TRAILING: &str = "__trailing!";
 
-/// Addends of a sum, separated by `|`: one a line where they do not stand on one.
-pub(super) const ADDENDS: &str = "__addends!";
-
 /// Lines as they are: the formatter does not lay out the body of a macro.
 const VERBATIM: &str = "__verbatim!";
 
@@ -113,6 +110,7 @@ fn argument<'a>(code: &'a str, marker: &str) -> Option<&'a str> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::layout::ADDENDS;
     use super::*;
 
     #[test]

@@ -1,6 +1,7 @@
 //! Lays out statements, heads of functions and lists within the width of a line.
 
-use super::format::ADDENDS;
+/// Addends of a sum, separated by `|`: one a line where they do not stand on one.
+pub(super) const ADDENDS: &str = "__addends!";
 
 /// Lines stay below this width, comments included.
 pub(super) const WIDTH: usize = 120;

@@ -1,6 +1,7 @@
 //! Prints expressions and statements as Rust.
 
-use super::format::{ADDENDS, SECTION, TRAILING};
+use super::format::{SECTION, TRAILING};
+use super::layout::ADDENDS;
 use crate::graph::Kind;
 use crate::schedule::tree::{Binding, Expr, Operation, Sign, Source, Statement};
 
