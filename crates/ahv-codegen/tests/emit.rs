@@ -287,14 +287,14 @@ fn a_kink_of_the_drift_is_a_boundary() {
     let folder = root().join("examples/winged-cone");
     let text = fs::read_to_string(folder.join("winged_cone.toml")).unwrap();
     let ir = fs::read_to_string(folder.join("generated/ir/winged_cone.json")).unwrap();
-    let irs = [("winged_cone".to_owned(), ir)].into();
+    let of_cone = [("winged_cone".to_owned(), ir)].into();
     let cone = Table::parse("winged_cone.toml", &text).unwrap();
     for language in [Target::Rust, Target::C] {
         let options = Options {
             target: language,
             ..Options::default()
         };
-        let tree = emit(std::slice::from_ref(&cone), &irs, &options).unwrap();
+        let tree = emit(std::slice::from_ref(&cone), &of_cone, &options).unwrap();
         let mut texts = tree.values();
         let line = "thrust_coefficient_boundary";
         assert!(texts.any(|text| text.contains(line)), "{language:?}");
@@ -408,7 +408,7 @@ fn another_schema_version_is_refused() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("schema version 1") && error.contains("reads 3"),
+        error.contains("schema version 1") && error.contains("reads 4"),
         "{error}"
     );
 }
