@@ -30,8 +30,12 @@ const PACKAGES: [(&str, &str); 5] = [
 const NEW: &str = "wang-stengel";
 /// The example whose package is checked in.
 const CHECKED_IN: &str = "winged-cone";
-/// It in turbulence: its example's README joins a gust, and the program has this name.
-const GUSTY: &str = "gusty-cone";
+/// The program over the examples whose README joins a gust: folder, and name of table and family.
+const GUSTY: &str = "gusty";
+const GUSTY_EXAMPLES: [(&str, &str); 2] = [
+    ("wang-stengel", "wang_stengel"),
+    ("winged-cone", "winged_cone"),
+];
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
 const GENERATE: &str = "ahv generate";
@@ -64,7 +68,16 @@ pub(crate) fn run() -> Result<(), String> {
         ("parker-canard", &["parker_canard"], commands::PARKER_CANARD),
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
-        (GUSTY, &["winged_cone", "gusty_cone"], commands::GUSTY_CONE),
+        (
+            GUSTY,
+            &[
+                "wang_stengel",
+                "gusty_wang_stengel",
+                "winged_cone",
+                "gusty_cone",
+            ],
+            commands::GUSTY,
+        ),
     ] {
         println!("{program}");
         let own = Own::new(program, &place.join("made"));
@@ -135,18 +148,17 @@ fn tables_of(place: &Path, package: &str) -> PathBuf {
     place.join(format!("made/tables-of-{package}"))
 }
 
-/// Makes the package of the example with the gust that its README joins.
+/// Makes the package of the examples with the gusts that their READMEs join.
 fn gusty(place: &Path) -> Result<(), String> {
-    let example = shell::root().join("examples").join(CHECKED_IN);
     let package = format!("{GUSTY}-models");
-    let folder = tables_of(place, &package);
-    let table = tables::joined(
-        &read(&example.join("winged_cone.toml"))?,
-        &read(&example.join("README.md"))?,
-    )?;
-    write(&folder.join("winged_cone.toml"), &table)?;
-    let family = read(&example.join("winged_cone.py"))?;
-    write(&folder.join("winged_cone.py"), &family)?;
+    let folder = place.join(format!("made/tables-of-{package}"));
+    for (example, name) in GUSTY_EXAMPLES {
+        let example = shell::root().join("examples").join(example);
+        let file = |ending: &str| read(&example.join(format!("{name}.{ending}")));
+        let table = tables::joined(&file("toml")?, &read(&example.join("README.md"))?)?;
+        write(&folder.join(format!("{name}.toml")), &table)?;
+        write(&folder.join(format!("{name}.py")), &file("py")?)?;
+    }
     generate(place, &package)
 }
 
