@@ -115,7 +115,9 @@ family.bounds(*STATES, *INPUTS)
 
 def define_coefficients(model: Model) -> tuple[Expr, Expr, Expr, Expr]:
     """Coefficients of lift, drag, thrust and pitching moment."""
-    V, incidence, Q, elevator = model.symbols(velocity, alpha, pitch_rate, delta_e)
+    V, Q, elevator = model.symbols(velocity, pitch_rate, delta_e)
+    # With that of a gust, if one joins.
+    incidence = model.seen(alpha)
     with model.section("Mach number", "(2)"):
         sound = model.fit(a)
         model.define(mach, V / sound)

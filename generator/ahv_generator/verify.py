@@ -19,7 +19,7 @@ SEED = 1
 _EPSILON = 2.0**-52
 # Of the sixth order: weights at one, two and three steps. At 50 digits a small step costs nothing.
 _WEIGHTS, _DIVISOR = {1: 45, 2: -9, 3: 1}, 60
-_STEP = 2.0**-20
+_STEP = 2.0**-40
 # Functions whose entries are derivatives of the drift, and the leaves by which.
 _DERIVATIVES = {
     "jacobians.state": ("state", "x"),
@@ -120,7 +120,8 @@ class _Drift:
         """The slope of every rate by a leaf."""
         with mpmath.workdps(DIGITS):
             here = mpmath.mpf(point[leaf])
-            step = _STEP * max(abs(here), 1)
+            # A coefficient may be far from 1.
+            step = _STEP * (abs(here) or 1)
             totals = [mpmath.mpf(0) for _ in self.rows]
             for count, weight in _WEIGHTS.items():
                 for sign in (1, -1):

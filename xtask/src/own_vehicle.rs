@@ -28,12 +28,16 @@ const PACKAGES: [(&str, &str); 5] = [
 ];
 /// The example of which `ahv new` makes a repository; the program has its name.
 const NEW: &str = "wang-stengel";
-/// The example in turbulence: its README joins a gust, and the program has this name.
-const GUSTY: (&str, &str) = ("gusty-cone", "winged-cone");
 /// The examples whose packages are checked in.
 const CHECKED_IN: [(&str, &[commands::Question]); 2] = [
     ("six-dof", commands::SIX_DOF),
     ("winged-cone", commands::WINGED_CONE),
+];
+/// The program over the examples whose README joins a gust: folder, and name of table and family.
+const GUSTY: &str = "gusty";
+const GUSTY_EXAMPLES: [(&str, &str); 2] = [
+    ("wang-stengel", "wang_stengel"),
+    ("winged-cone", "winged_cone"),
 ];
 /// The page that tells a stranger what to do, and the commands there.
 const PAGE: &str = "docs/link.md";
@@ -69,9 +73,14 @@ pub(crate) fn run() -> Result<(), String> {
         ("pendulum", &["pendulum"], commands::PENDULUM),
         ("tank", &["tank"], commands::TANK),
         (
-            GUSTY.0,
-            &["winged_cone", "gusty_cone"],
-            commands::GUSTY_CONE,
+            GUSTY,
+            &[
+                "wang_stengel",
+                "gusty_wang_stengel",
+                "winged_cone",
+                "gusty_cone",
+            ],
+            commands::GUSTY,
         ),
     ] {
         println!("{program}");
@@ -149,18 +158,17 @@ fn tables_of(place: &Path, package: &str) -> PathBuf {
     place.join(format!("made/tables-of-{package}"))
 }
 
-/// Makes the package of the example with the gust that its README joins.
+/// Makes the package of the examples with the gusts that their READMEs join.
 fn gusty(place: &Path) -> Result<(), String> {
-    let example = shell::root().join("examples").join(GUSTY.1);
-    let package = format!("{}-models", GUSTY.0);
+    let package = format!("{GUSTY}-models");
     let folder = tables_of(place, &package);
-    let table = tables::joined(
-        &read(&example.join("winged_cone.toml"))?,
-        &read(&example.join("README.md"))?,
-    )?;
-    write(&folder.join("winged_cone.toml"), &table)?;
-    let family = read(&example.join("winged_cone.py"))?;
-    write(&folder.join("winged_cone.py"), &family)?;
+    for (example, name) in GUSTY_EXAMPLES {
+        let example = shell::root().join("examples").join(example);
+        let file = |ending: &str| read(&example.join(format!("{name}.{ending}")));
+        let table = tables::joined(&file("toml")?, &read(&example.join("README.md"))?)?;
+        write(&folder.join(format!("{name}.toml")), &table)?;
+        write(&folder.join(format!("{name}.py")), &file("py")?)?;
+    }
     generate(place, &package)
 }
 

@@ -241,8 +241,8 @@ pub(super) const WANG_STENGEL: &[Question] = &[
     ),
 ];
 
-/// A gust of two states joins the winged cone: at rest it changes no trim, and it drives every member of its own.
-pub(super) const GUSTY_CONE: &[Question] = &[
+/// Gusts join the examples: at rest they change no trim, and they drive every member of its own.
+pub(super) const GUSTY: &[Question] = &[
     (
         "trim --model gusty_cone --velocity 15060 --altitude 110000",
         &[
@@ -259,6 +259,14 @@ pub(super) const GUSTY_CONE: &[Question] = &[
     (
         "montecarlo --model gusty_cone --members 1000 --t-end 1 --dt 0.01",
         &["/members = 1000", "/lost = 0", "#/mean = 9"],
+    ),
+    (
+        "trim --model gusty_wang_stengel --velocity 15060 --altitude 110000",
+        &["/converged = true", "/state/alpha ~ 0.031225"],
+    ),
+    (
+        "montecarlo --model gusty_wang_stengel --members 1000 --t-end 1 --dt 0.01",
+        &["/members = 1000", "/lost = 0", "#/mean = 8"],
     ),
     (
         "montecarlo --model winged_cone --members 16 --t-end 1 --dt 0.01 --disperse",
