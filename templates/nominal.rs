@@ -7,6 +7,11 @@ use ahv_core::{Bounds, ParameterSet, Provenance};
 /// The unit system: `ft-slug-s-rad` or `si`.
 pub const UNIT_SYSTEM: &str = "{{ system }}";
 
+{%- if has_degrees %}
+/// A degree in rad: what the table has per degree is written so here.
+const DEGREE: f64 = core::f64::consts::PI / 180.0;
+{%- endif %}
+
 /// Values of the parameters in the table{% if !own_set.is_empty() %}, the set `{{ own_set }}`{% endif %}.
 pub const NOMINAL: Parameters<f64> = Parameters {
 {%- for (name, value) in values %}

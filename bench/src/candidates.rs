@@ -74,10 +74,12 @@ pub(crate) fn build(
             candidates.push(wrenfold(names[1], flags, setting)?);
         }
     }
-    candidates.push(side_by_side::<lanes::Short, lanes::Exact>(
-        LANES,
-        lanes::EXACT,
-    ));
+    let in_lanes = if lanes::all_in_a_register() {
+        side_by_side::<lanes::Exact, lanes::Exact>
+    } else {
+        side_by_side::<lanes::Short, lanes::Exact>
+    };
+    candidates.push(in_lanes(LANES, lanes::EXACT));
     if let Some(arrays) = arrays {
         candidates.push(symforce(setting)?);
         let numba = "`njit` of CasADi's instructions and of the loop over the points";

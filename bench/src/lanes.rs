@@ -20,7 +20,20 @@ pub(crate) type Exact = Branchless<f64>;
 pub(crate) type Short = Pair;
 
 /// How they are built, for people.
-pub(crate) const EXACT: &str = "rustc -O, thin LTO, baseline target, x86-64-v3 chosen at run time";
+pub(crate) const EXACT: &str =
+    "rustc -O, thin LTO, baseline target, AVX2 or AVX-512 chosen at run time";
+
+/// Whether the machine's registers hold a number of each member: of [`Short`], the halves would not fill one.
+pub(crate) fn all_in_a_register() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        pulp::x86::V4::try_new().is_some()
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
+    }
+}
 
 /// Evaluates at points of which each [`LANES`] lie side by side, and leaves the results of the last of them.
 type Call<M, X, U, Y> = fn(&M, &[X], &[U], &mut Y);

@@ -75,7 +75,8 @@ impl Bound {
             title: "Bound of the execution ports".to_owned(),
             note: format!(
                 "DCOM drift of a member in lanes. {VECTORS} vectors of {WIDTH} doubles are added in a cycle and {VECTORS} multiplied, as \
-                 Zen 2 to 4 do; what there is more of bounds the time. A sine and cosine has {} additions and {} multiplications, an \
+                 Zen 2 to 4 do; what there is more of bounds the time. Where two vectors of twice the width are added or multiplied in a \
+                 cycle, as AVX-512 of Intel does, the bound is not greater. A sine and cosine has {} additions and {} multiplications, an \
                  exponential {} and {}. Divisions, comparisons, loads and stores are left out. The clock is that of a chain of \
                  integer operations at its fastest.",
                 SIN_COS[0], SIN_COS[1], EXP[0], EXP[1]

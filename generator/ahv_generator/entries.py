@@ -71,11 +71,12 @@ class Entries:
                 self.faults.key("missing", path, f"`{key}` is missing")
         value = self.number(entry["value"], (*path, "value")) if "value" in entry else None
         if "unit" in entry:
-            self.unit(entry["unit"], (*path, "unit"), units.converted(expected, self.system))
+            scale = self.unit(entry["unit"], (*path, "unit"), units.converted(expected, self.system))
+            value = None if value is None else value * scale
         provenance = self.provenance(entry, path)
         if value is None:
             return None
-        self.values[path], self.units[path] = value, str(entry.get("unit", expected))
+        self.values[path], self.units[path] = value, units.in_radians(str(entry.get("unit", expected)))
         return provenance
 
     def number(self, value: object, path: Path) -> float | None:
@@ -93,24 +94,24 @@ class Entries:
             return None
         return number
 
-    def unit(self, text: object, path: Path, expected: str, *, degrees: bool = False) -> None:
-        """Faults of a unit that is not the expected one, or that in degrees where they are allowed."""
+    def unit(self, text: object, path: Path, expected: str) -> float:
+        """What turns a value into one in the expected unit: 1, or degrees into rad; other units are faults."""
         if not isinstance(text, str):
             self.faults.value("unit", path, "`unit` must be a text")
-            return
+            return 1.0
         try:
             scale = units.factor(text, expected)
         except units.UnitError as error:
             self.faults.value("unit", path, str(error), f"the unit here is `{expected}`")
-            return
-        wanted = math.radians(1.0) if degrees and "deg" in text else 1.0
-        if not math.isclose(scale, wanted, rel_tol=1e-9):
+            return 1.0
+        if not math.isclose(units.factor(units.in_radians(text), expected), 1.0, rel_tol=1e-9) or not units.whole(text):
             self.faults.value(
                 "unit",
                 path,
                 f"`{text}` measures the right thing, but the table is in {self.system}",
                 f"write the value in `{expected}`",
             )
+        return scale
 
     def provenance(self, entry: Mapping[str, object], path: Path) -> Provenance:
         """Source, status and uncertainty of an entry, the table's own where it has none."""

@@ -15,17 +15,24 @@ DIGITS = 50
 Number = Any
 Value = tuple[Number, float]
 
+_NAN = mpmath.mpf("nan")
+
 _FUNCTIONS: Mapping[str, tuple[Callable[[Number], Number], Callable[[Number], Number]]] = {
-    # A function and its slope.
+    # A function and the size of its slope.
     "sin": (mpmath.sin, mpmath.cos),
     "cos": (mpmath.cos, mpmath.sin),
+    "tan": (mpmath.tan, lambda x: 1 / mpmath.cos(x) ** 2),
+    "asin": (mpmath.asin, lambda x: 1 / mpmath.sqrt(1 - x**2)),
+    "atan": (mpmath.atan, lambda x: 1 / (1 + x**2)),
     "exp": (mpmath.exp, mpmath.exp),
+    "tanh": (mpmath.tanh, lambda x: 1 / mpmath.cosh(x) ** 2),
+    "ln": (mpmath.log, lambda x: 1 / x),
     "sqrt": (mpmath.sqrt, lambda x: 1 / (2 * mpmath.sqrt(x)) if x else mpmath.mpf(0)),
 }
 
 
 class Exact:
-    """Some expressions of a model, ready to be evaluated at points."""
+    """Some expressions of a model, ready to be evaluated at points; a value is NaN where there is none."""
 
     def __init__(self, model: Model, roots: Iterable[Any]) -> None:
         quantities = {name: tree(quantity.expr) for name, quantity in model.graph.quantities.items()}
@@ -64,19 +71,43 @@ def _value(expr: Tree, known: Mapping[str, Value]) -> Value:
     if isinstance(expr, float):
         return mpmath.mpf(expr), abs(expr)
     op, *arguments = expr
-    if op == "pow":
-        value, size = _value(arguments[0], known)
-        exponent = int(float(arguments[1]))  # type: ignore[arg-type]
-        result = value**exponent
-        return result, size**exponent if exponent > 0 else abs(float(result))
     parts = [_value(argument, known) for argument in arguments]
+    if any(mpmath.isnan(value) for value, _ in parts):
+        return _NAN, 0.0
+    try:
+        value, size = _applied(str(op), parts)
+    except (ZeroDivisionError, ValueError):
+        return _NAN, 0.0
+    # Outside its real domain a function has a complex value.
+    return (_NAN, 0.0) if isinstance(value, mpmath.mpc) else (value, float(size))
+
+
+def _applied(op: str, parts: list[Value]) -> tuple[Number, Number]:
+    """An operation on values. What an error of the measure's size in an argument does belongs to the measure."""
+    values, sizes = [value for value, _ in parts], [size for _, size in parts]
     if op in _FUNCTIONS:
-        function, slope = _FUNCTIONS[str(op)]
-        ((value, size),) = parts
-        result = function(value)
-        # What an error of the measure's size in the argument does belongs to the measure.
-        return result, abs(float(result)) + abs(float(slope(value))) * size
-    return _combined(str(op), parts)
+        function, slope = _FUNCTIONS[op]
+        result = function(values[0])
+        return result, abs(result) + abs(slope(values[0])) * sizes[0]
+    if op == "pow":
+        exponent = int(values[1])
+        result = values[0] ** exponent
+        return result, sizes[0] ** exponent if exponent > 0 else abs(result)
+    if op == "powr":
+        base, exponent = values
+        result = base**exponent
+        return result, abs(result) * (1 + abs(exponent / base) * sizes[0] + abs(mpmath.log(base)) * sizes[1])
+    if op == "atan2":
+        y, x = values
+        result = mpmath.atan2(y, x)
+        return result, abs(result) + (abs(x) * sizes[0] + abs(y) * sizes[1]) / (x**2 + y**2)
+    if op == "abs":
+        return abs(values[0]), sizes[0]
+    if op in ("min", "max"):
+        return (min if op == "min" else max)(parts, key=lambda part: part[0])
+    if op == "select":
+        return parts[2] if values[0] < values[1] else parts[3]
+    return _combined(op, parts)
 
 
 def _combined(op: str, parts: list[Value]) -> Value:

@@ -183,6 +183,11 @@ def check_dimensions(name: str, expr: ca.SX, unit: str, known: Mapping[str, str]
         )
 
 
+def dimensions_of(expr: ca.SX, known: Mapping[str, str]) -> units.Dimensions:
+    """The dimensions of an expression; an angle is a pure number."""
+    return _dimensions(tree(expr), known) or {}
+
+
 def _in_words(found: units.Dimensions | None) -> str:
     """Dimensions as a product of powers: `mass*length/time^2`."""
     powers = {name.strip("[]"): power for name, power in (found or {}).items() if power}

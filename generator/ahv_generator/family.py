@@ -203,19 +203,21 @@ class Family:
             for own in (*instance.part.states, *instance.part.inputs):
                 if own.bounds is None:
                     self._declare_for(name, "validity", instance.variable(own))
+            for rule in map(instance.rule, instance.part.rules):
+                self._declare_for(name, "", rule)
         self._check_model(name, title, base.equations, bases)
         self.models[name] = replace(
             base, name=name, title=title, bases=bases, audited=False, instances=tuple(instances), of=of
         )
 
-    def _declare_for(self, model: str, section: str, what: Parameter | Variable) -> None:
+    def _declare_for(self, model: str, section: str, what: Parameter | Variable | Rule) -> None:
         """Declare something for one model more; parts of the same name share what they declare."""
         for at, known in enumerate(self._declared):
             if known.section == section and known.what == what and known.models:
                 self._declared[at] = replace(known, models=(*known.models, model))
                 return
         taken = [v.name for v in self._all(Variable)] if isinstance(what, Variable) else self._names()
-        if what.name in taken:
+        if not isinstance(what, Rule) and what.name in taken:
             raise FamilyError(f"the name `{what.name}` is used twice")
         self._declared.append(_Declared(section, what, (model,)))
 

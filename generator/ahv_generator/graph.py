@@ -68,6 +68,14 @@ class Graph:
         """Raise `ExpressionError` unless an expression has the dimensions of `unit`."""
         check_dimensions(name, expr, unit, self.units)
 
+    def leaves_in(self, expr: ca.SX) -> frozenset[str]:
+        """The leaves that an expression depends on in the end."""
+        return frozenset().union(*(self._leaves[name] for name in self._names_in(expr)))
+
+    def unit_of(self, dimensions: units.Dimensions) -> str:
+        """A unit of the graph's system that has these dimensions."""
+        return units.converted(units.basic(dimensions), self.system)
+
     def _names_in(self, expr: ca.SX) -> list[str]:
         # CasADi lists symbols in traversal order; the order of declaration is the one a reader knows.
         return sorted((symbol.name() for symbol in ca.symvar(expr)), key=self._position.__getitem__)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from .boundaries import add_boundaries
 from .function import Entry, Output
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ def add_drift_and_derivatives(m: Model, rates: Mapping[str, ca.SX], equation: st
         [_hessian(m, by_state)],
         compressed=True,
     )
+    add_boundaries(m, rates)
 
 
 def _hessian(m: Model, by_state: Output) -> Output:

@@ -11,7 +11,7 @@ import casadi as ca
 
 from . import names, units
 from .diagnostics import FamilyError, suggestion
-from .schema import Parameter, Variable, check_texts
+from .schema import Parameter, Rule, Variable, check_texts
 from .traits import Named, name_of
 
 
@@ -62,6 +62,7 @@ class Part:
     inputs: Sequence[Variable] = ()
     noise: Sequence[Variable] = ()
     parameters: Sequence[Parameter] = ()
+    rules: Sequence[Rule] = ()
     drives: Sequence[Variable] = ()
     build: Callable[[PartModel], None] | None = None
 
@@ -73,6 +74,11 @@ class Part:
             raise FamilyError(f"the name `{twice[0]}` is used twice in the part")
         if not self.states:
             raise FamilyError("a part has one state at least")
+        known = [one.name for one in self.parameters]
+        for rule in self.rules:
+            for name in rule.parameters():
+                if name not in known:
+                    raise FamilyError(f"the rule `{rule.name}` names `{name}`, which the part does not have")
 
     @property
     def variables(self) -> tuple[Variable, ...]:
@@ -100,6 +106,11 @@ class Instance:
     def parameter(self, own: Parameter) -> Parameter:
         """A parameter of the part, as the joined model has it: its key is the part's, its name the instance's."""
         return replace(own, prefix=f"{self.name}_")
+
+    def rule(self, own: Rule) -> Rule:
+        """A rule of the part, as the joined model has it."""
+        terms = tuple((factor, tuple(self.full(name) for name in names)) for factor, names in own.terms)
+        return replace(own, terms=terms)
 
     def full(self, name: str) -> str:
         """A name of the part, as the joined model has it."""

@@ -319,11 +319,9 @@ class _Reader:
         low, high = (self.entries.number(box[key], (*path, key)) for key in ("min", "max"))
         if low is not None and high is not None and low >= high:
             self.faults.value("range", (*path, "min"), "`min` must be below `max`")
-        # An angle may be in degrees here; nothing else is converted.
         expected = units.converted(spec.unit, self.entries.system)
-        self.entries.unit(box["unit"], (*path, "unit"), expected, degrees=True)
+        scale = self.entries.unit(box["unit"], (*path, "unit"), expected)
         if low is not None and high is not None and not self.faults.found:
-            scale = units.factor(str(box["unit"]), expected)
             self.box[spec.name] = (low * scale, high * scale)
 
     def _sets(self, own: str, schema: Schema) -> Iterable[ParameterSet]:

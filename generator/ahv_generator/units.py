@@ -120,6 +120,16 @@ def factor(text: str, expected: str) -> float:
     return ratio
 
 
+def in_radians(text: str) -> str:
+    """A unit with radians for degrees."""
+    return text.replace("deg", "rad")
+
+
+def whole(text: str) -> bool:
+    """Whether degrees stand in a unit with a whole power: only then is their conversion the same on every machine."""
+    return cast("float", _parse(text)._units.get("degree", 0)) % 1 == 0
+
+
 def other(system: str) -> str:
     """The system that is not `system`."""
     return SI if system == IMPERIAL else IMPERIAL
@@ -150,6 +160,15 @@ def dimensions(text: str) -> Dimensions:
     """Exponents of length, mass, time and temperature; an angle counts as a pure number."""
     found = _parse(text).dimensionality
     return {str(k): cast("float", v) * 1.0 for k, v in found.items() if str(k) != "[angle]" and v != 0}
+
+
+def basic(found: Dimensions) -> str:
+    """The unit of these dimensions in foot, slug, second and kelvin."""
+    names = {"[length]": "ft", "[mass]": "slug", "[time]": "s", "[temperature]": "K"}
+    powers = {names[name]: power for name, power in found.items() if abs(power) > 1e-9}
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
 
 
 def spelled(texts: Iterable[str]) -> dict[str, str]:

@@ -114,8 +114,7 @@ class _Drift:
                     # An entry that is not there is 0; its measure is that of the drift by the size of the variable.
                     nothing = (mpmath.mpf(0), size / max(abs(point[leaf]), _STEP))
                     value, measure = values.get(label, nothing)
-                    with mpmath.workdps(DIGITS):
-                        yield label, _ratio(abs(float(slope - value)), measure)
+                    yield label, _error(slope, (value, measure))
 
     def slopes(self, point: Mapping[str, float], leaf: str) -> list[Number]:
         """The slope of every rate by a leaf."""
@@ -133,15 +132,16 @@ class _Drift:
             return totals
 
 
-def _error(value: float, exact: Value) -> float:
+def _error(value: Number, exact: Value) -> float:
+    """The error of a value in the measure; none where the exact value is not a number, for there any will do."""
+    number, size = exact
+    if mpmath.isnan(number):
+        return 0.0
     with mpmath.workdps(DIGITS):
-        return _ratio(abs(float(mpmath.mpf(value) - exact[0])), exact[1])
-
-
-def _ratio(difference: float, size: float) -> float:
+        difference = float(abs(mpmath.mpf(value) - number))
     if difference == 0.0:
         return 0.0
-    return difference / (_EPSILON * size) if size else float("inf")
+    return difference / (_EPSILON * size) if size and difference < float("inf") else float("inf")
 
 
 def _text(value: Value) -> str:

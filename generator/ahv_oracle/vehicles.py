@@ -86,13 +86,13 @@ class Coefficients:
 
 
 def winged_cone_coefficients(x: Values) -> Coefficients:
-    """Those of Xu, Mirmirani and Ioannou (2004), below beta = 1."""
-    alpha = x["alpha"]
+    """Those of Xu, Mirmirani and Ioannou (2004)."""
+    alpha, beta = x["alpha"], x["beta"]
     damping = 80.0 / (2 * x["velocity"]) * x["pitch_rate"] * (-6.796 * alpha**2 + 0.3015 * alpha - 0.2289)
     return Coefficients(
         lift=0.6203 * alpha,
         drag=0.6450 * alpha**2 + 0.0043378 * alpha + 0.003772,
-        thrust=0.02576 * x["beta"],
+        thrust=0.02576 * beta if beta.real < 1 else 0.0224 + 0.00336 * beta,
         moment=-0.035 * alpha**2 + 0.036617 * alpha + 5.3261e-6 + damping + 0.0292 * (x["delta_e"] - alpha),
     )
 

@@ -10,7 +10,7 @@ import pytest
 from test_families_page import ALONE
 
 from ahv_generator.model import Model
-from ahv_generator.table import load
+from ahv_generator.table import Table, load
 
 TABLE = """
 [table]
@@ -75,22 +75,32 @@ def quantities(model: Model, leaves: dict[str, float]) -> dict[str, float]:
     return found
 
 
-@pytest.fixture(name="capsule", scope="module")
-def _capsule(tmp_path_factory: pytest.TempPathFactory) -> dict[float, dict[str, float]]:
-    """The quantities of the capsule at each printed altitude, and 1 m above it."""
+@pytest.fixture(name="capsule_table", scope="module")
+def _capsule_table(tmp_path_factory: pytest.TempPathFactory) -> Table:
+    """The table of the capsule on the page."""
     folder = tmp_path_factory.mktemp("capsule")
     (folder / "capsule.py").write_text(ALONE["capsule.py"], encoding="utf-8")
-    path, text = folder / "capsule.toml", TABLE + ALONE["air.toml"]
-    path.write_text(text, encoding="utf-8")
-    table, document = load(path), tomllib.loads(text)
-    leaves = {f"p.{p.name}": document[p.path[0]][p.path[1]]["value"] for p in table.parameters}
-    model = table.model("capsule")
+    path = folder / "capsule.toml"
+    path.write_text(TABLE + ALONE["air.toml"], encoding="utf-8")
+    return load(path)
+
+
+@pytest.fixture(name="capsule_model", scope="module")
+def _capsule_model(capsule_table: Table) -> Model:
+    return capsule_table.model("capsule")
+
+
+@pytest.fixture(name="capsule", scope="module")
+def _capsule(capsule_table: Table, capsule_model: Model) -> dict[float, dict[str, float]]:
+    """The quantities of the capsule at each printed altitude, and 1 m above it."""
+    document = tomllib.loads(TABLE + ALONE["air.toml"])
+    leaves = {f"p.{p.name}": document[p.path[0]][p.path[1]]["value"] for p in capsule_table.parameters}
     found = {}
     for height, *_ in PRINTED:
         geometric = 6356766.0 * height / (6356766.0 - height)
         for extra in (0.0, 1.0):
             at = leaves | {"x.velocity": 100.0, "x.altitude": geometric + extra, "u.thrust": 3000.0}
-            found[height + extra] = quantities(model, at)
+            found[height + extra] = quantities(capsule_model, at)
     return found
 
 
@@ -120,3 +130,17 @@ def test_what_the_capsule_chooses_is_its_own(capsule: dict[float, dict[str, floa
     drag = 1.2250 * 100.0**2 / 2 * 4.0 * 0.9
     assert found["drag"] == pytest.approx(drag, rel=1e-5)
     assert found["brake"] == pytest.approx(9806.65 * math.tanh(3000.0 / 9806.65), rel=1e-12)
+
+
+def test_the_boundaries_are_those_of_the_drift_each_once(capsule_model: Model) -> None:
+    model = capsule_model
+    assert model.names("boundary") == (
+        *(f"layer_floor_boundary_{k}" for k in range(1, 7)),
+        "drag_boundary",
+        "brake_boundary",
+    )
+    assert [v.unit for v in model.bases["boundary"]] == ["m"] * 6 + ["1", "kg*m/s^2"]
+    (function,) = [f for f in model.functions if f.name == "boundaries"]
+    texts = [str(entry.expr) for entry in function.outputs[0].entries]
+    assert texts[0] == "(geopotential_altitude-p.h_1)"
+    assert texts[6:] == ["(mach-1)", "u.thrust"]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from evaluated import Evaluated
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.linalg import solve_continuous_lyapunov
 
 from ahv_generator.diagnostics import Diagnostic, TableError
@@ -31,10 +32,18 @@ turbulence = { part = "dryden", state = "alpha", speed = "velocity" }
 gyro = { part = "coloured_sensor", state = "pitch_rate" }
 vane = { part = "white_sensor", state = "alpha" }
 
+canard = { part = "limited_second_order_actuator", input = "delta_c" }
+slow = { part = "limited_first_order_actuator", input = "delta_e" }
+
 [joined.servoed]
 model = "dcom"
 title = "DCOM with parts"
 parts = ["elevator", "engine", "shaper", "turbulence", "gyro", "vane"]
+
+[joined.limited]
+model = "dcom"
+title = "DCOM, limited"
+parts = ["slow", "canard"]
 
 [joined.gusty]
 model = "dcom"
@@ -63,6 +72,17 @@ length = { value = 1000.0, unit = "ft" }
 [gyro]
 sigma = { value = 0.002, unit = "rad/s" }
 tau = { value = 0.2, unit = "s" }
+[canard]
+omega = { value = 30.0, unit = "rad/s" }
+zeta = { value = 0.5, unit = "1" }
+lowest = { value = -0.3, unit = "rad" }
+highest = { value = 0.2, unit = "rad" }
+fastest = { value = 2.0, unit = "rad/s" }
+[slow]
+tau = { value = 0.1, unit = "s" }
+lowest = { value = -0.35, unit = "rad" }
+highest = { value = 0.35, unit = "rad" }
+fastest = { value = 1.5, unit = "rad/s" }
 [vane]
 sigma = { value = 0.001, unit = "rad/s^0.5" }
 tau = { value = 0.4, unit = "s" }
@@ -72,11 +92,11 @@ elevator_rate = { min = -10.0, max = 10.0, unit = "rad/s" }
 gust_level = { min = -0.1, max = 0.1, unit = "rad" }
 turbulence_first = { min = -50.0, max = 50.0, unit = "ft/s" }
 turbulence_second = { min = -50.0, max = 50.0, unit = "ft/s" }
+canard_rate = { min = -10.0, max = 10.0, unit = "rad/s" }
 gyro_error = { min = -0.1, max = 0.1, unit = "rad/s" }
 """
-TABLE = DCOM.replace(MODELS, 'models = ["dcom", "sdcom", "sdcom_gust", "servoed", "gusty", "gusty_sdcom"]').replace(
-    "[validity]", PARTS, 1
-)
+LISTED = 'models = ["dcom", "sdcom", "sdcom_gust", "servoed", "limited", "gusty", "gusty_sdcom"]'
+TABLE = DCOM.replace(MODELS, LISTED).replace("[validity]", PARTS, 1)
 
 RIGID = {"velocity": 7800.0, "altitude": 86000.0, "gamma": 0.01, "alpha": 0.02, "pitch_rate": -0.03}
 MODAL = {"eta_1": 0.3, "eta_dot_1": -0.2, "eta_2": 0.1, "eta_dot_2": 0.4, "eta_3": -0.1, "eta_dot_3": 0.2}
@@ -262,20 +282,22 @@ def faults(folder: Path, old: str, new: str, files: Mapping[str, str] | None = N
 
 ELEVATOR = 'elevator = { part = "second_order_actuator", input = "delta_e" }'
 SERVOED = 'parts = ["elevator", "engine", "shaper", "turbulence", "gyro", "vane"]'
+SECOND = '"second_order_actuator"'
 CASES = [
     # what is replaced, by what, rule, path, part of the message, part of the help
-    ('input = "delta_e"', 'input = "delta_f"', "unknown-join", ("parts", "elevator", "input"),
+    (f'{SECOND}, input = "delta_e"', f'{SECOND}, input = "delta_f"', "unknown-join", ("parts", "elevator", "input"),
      "`delta_f` is neither a state nor an input of `dcom`", "`delta_e`"),
-    ('input = "delta_e"', 'inptu = "delta_e"', "missing", ("parts", "elevator"), "`input` is missing", None),
-    ('input = "delta_e"', 'input = "alpha"', "joined", ("joined", "servoed"),
+    (f'{SECOND}, input = "delta_e"', f'{SECOND}, inptu = "delta_e"', "missing", ("parts", "elevator"),
+     "`input` is missing", None),
+    (f'{SECOND}, input = "delta_e"', f'{SECOND}, input = "alpha"', "joined", ("joined", "servoed"),
      "`elevator` drives `alpha`, which is not an input", None),
     ('input = "phi"', 'input = "delta_e"', "joined", ("joined", "servoed"),
      "`engine` drives `delta_e`, which is not an input or is driven already", None),
     ('input = "elevator_command"', 'input = "elevator_comand"', "unknown-join", ("parts", "shaper", "input"),
      "neither a state nor an input", "`elevator_command`"),
-    ('"second_order_actuator"', '"second_order_servo"', "unknown-part", ("parts", "elevator", "part"),
+    (SECOND, '"second_order_servo"', "unknown-part", ("parts", "elevator", "part"),
      "unknown part `second_order_servo`", "second_order_actuator"),
-    ('"second_order_actuator"', '"servo.py"', "unknown-part", ("parts", "elevator", "part"), "there is no file", None),
+    (SECOND, '"servo.py"', "unknown-part", ("parts", "elevator", "part"), "there is no file", None),
     (ELEVATOR, 'elevator = "second_order_actuator"', "shape", ("parts", "elevator"), "a part is a table", None),
     (ELEVATOR, ELEVATOR.replace("elevator", "Elevator", 1), "part", ("parts", "Elevator"), "lower-case", None),
     (ELEVATOR, ELEVATOR.replace('part = "second_order_actuator", ', ""), "missing", ("parts", "elevator"),
@@ -289,6 +311,8 @@ CASES = [
      ("joined", "servoed", "model"), "`dkom` is not a model of the family", "`dcom`"),
     ("[joined.servoed]", "[joined.sdcom_gust]", "joined", ("joined", "sdcom_gust"), "used twice", None),
     ("omega = { value = 20.0, unit = \"rad/s\" }\n", "", "missing", ("elevator",), "`omega` (natural frequency", None),
+    ("highest = { value = 0.2,", "highest = { value = -0.4,", "limits", ("canard", "highest", "value"),
+     "`highest` must exceed `lowest`", None),
     ("zeta = { value = 0.7", "zeta = { value = -0.7", "not-negative", ("elevator", "zeta", "value"),
      "must not be negative", None),
     ('elevator_rate = { min = -10.0, max = 10.0, unit = "rad/s" }\n', "", "missing", ("validity",),
@@ -315,6 +339,40 @@ def test_a_name_that_is_taken_is_no_name_of_a_part(tmp_path: Path) -> None:
         both = f"{part}\n{TABLE.split(ELEVATOR)[1].split(SERVOED)[0]}{text}"
         found = faults(tmp_path, TABLE[TABLE.index(ELEVATOR) : TABLE.index(SERVOED) + len(SERVOED)], both)
         assert [fault.rule for fault in found if "has a meaning of its own" in fault.message] == ["joined"], name
+
+
+@pytest.mark.parametrize(
+    ("where", "command", "rate"),
+    [(0.1, 0.15, 0.5), (0.1, 0.34, 1.5), (0.3, 9.0, 0.5), (0.0, -0.2, -1.5), (-0.33, -0.9, -0.2)],
+)
+def test_limits_of_first_order(table: Path, where: float, command: float, rate: float) -> None:
+    at = RIGID | MODAL | {"phi": 0.3, "slow_position": where, "slow_command": command}
+    found = Evaluated(table, "limited").at(at)
+    assert found["drift.slow_position"] == pytest.approx(rate, rel=1e-12)
+    held = rate in (1.5, -1.5)
+    slope = found["jacobians.state.slow_position.slow_position"]
+    assert slope == pytest.approx(0.0 if held else -10.0, rel=1e-12)
+    of_command = found["jacobians.input.slow_position.slow_command"]
+    assert of_command == pytest.approx(0.0 if held or abs(command) > 0.35 else 10.0, rel=1e-12)
+
+
+def test_an_actuator_with_limits_flies_as_one_that_is_written_down_again(table: Path) -> None:
+    limited = Evaluated(table, "limited")
+    names = ("canard_position", "canard_rate")
+
+    def joined(time: float, state: NDArray[np.float64]) -> list[float]:
+        at = RIGID | {"canard_command": 0.5 * math.cos(4 * time), **dict(zip(names, map(float, state), strict=True))}
+        rates = limited.drift(at)
+        return [rates[name] for name in names]
+
+    def again(time: float, state: NDArray[np.float64]) -> list[float]:
+        command = float(np.clip(0.5 * math.cos(4 * time), -0.3, 0.2))
+        return [float(np.clip(state[1], -2.0, 2.0)), 900.0 * (command - state[0]) - 30.0 * state[1]]
+
+    flights = [solve_ivp(f, (0.0, 1.5), [0.0, 0.0], rtol=1e-6, atol=1e-8, max_step=0.02) for f in (joined, again)]
+    assert flights[0].y[:, -1] == pytest.approx(flights[1].y[:, -1], rel=1e-6, abs=1e-9)
+    # Without limits it would pass both.
+    assert np.max(np.abs(np.diff(flights[0].y[0]) / np.diff(flights[0].t))) <= 2.0 + 1e-9
 
 
 SERVO = (Path(__file__).parents[1] / "ahv_generator" / "parts" / "first_order_actuator.py").read_text(encoding="utf-8")

@@ -43,7 +43,7 @@ CASES = [
     (CL_ALPHA, CL_ALPHA.replace("4.6773", "inf"), "not-finite", ("C_L", "alpha", "value"), "finite", None),
     (CL_ALPHA, CL_ALPHA.replace("4.6773", '"4.6"'), "not-a-number", ("C_L", "alpha", "value"), "number", None),
     (CL_ALPHA, CL_ALPHA.replace("1/rad", "1/s"), "unit", ("C_L", "alpha", "unit"), "does not fit", "`1/rad`"),
-    (CL_ALPHA, CL_ALPHA.replace("1/rad", "1/deg"), "unit", ("C_L", "alpha", "unit"), "right thing", "`1/rad`"),
+    (CL_ALPHA, CL_ALPHA.replace("1/rad", "ft/m/rad"), "unit", ("C_L", "alpha", "unit"), "right thing", "`1/rad`"),
     (CL_ALPHA, CL_ALPHA.replace("1/rad", "furlong"), "unit", ("C_L", "alpha", "unit"), "not a unit", None),
     (CL_ALPHA, CL_ALPHA.replace("1/rad", "rad^9**9**9**9"), "unit", ("C_L", "alpha", "unit"), "is not a unit", None),
     (CL_ALPHA, CL_ALPHA.replace("1/rad", "1/\\nrad"), "unit", ("C_L", "alpha", "unit"), "is not a unit", None),
@@ -151,6 +151,19 @@ CASES = [
     ('units = "ft-slug-s-rad"', 'units = "SI"', "unit-system", ("table", "units"), "unknown unit system", "`si`"),
     ('units = "ft-slug-s-rad"', 'units = "si"', "unit", ("vehicle", "m", "unit"), "the table is in si", "`kg/m`"),
 ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("value", "unit"), [("0.0816342868", "1/deg"), ("4.6773", "1/rad"), ("0.0816342868", "rad/deg/rad")]
+)
+def test_a_value_per_degree_is_taken_and_is_the_same_structure(tmp_path: Path, value: str, unit: str) -> None:
+    text = (TABLES / "com.toml").read_text(encoding="utf-8")
+    assert CL_ALPHA in text
+    path = tmp_path / "com.toml"
+    given = CL_ALPHA.replace("4.6773", value).replace("1/rad", unit)
+    path.write_text(text.replace(CL_ALPHA, given, 1), encoding="utf-8")
+    (lift,) = [p for p in load(path).parameters if p.path == ("C_L", "alpha")]
+    assert lift.unit == unit.replace("deg", "rad")
 
 
 @pytest.mark.parametrize(("old", "new", "rule", "path", "message", "help"), CASES, ids=lambda part: str(part)[:40])

@@ -122,17 +122,35 @@ def degrees(name: str) -> tuple[float, float]:
 def test_the_measure_has_every_summand_with_its_absolute_value() -> None:
     oscillator = model("van_der_pol")
     x, v = oscillator["position"], oscillator["rate"]
-    exprs = [x - v, (x - v) ** 2, 3 / (x - v), ca.sin(x - v), ca.sqrt(x * v) - 1, -(x + v)]
-    found = Exact(oscillator, exprs).at({"x.position": 2.0, "x.rate": 1.5})
-    root = math.sqrt(3.0)
-    sine = math.sin(0.5) + math.cos(0.5) * 3.5
-    for (value, size), expected, measure in zip(
-        found,
-        [0.5, 0.25, 6.0, math.sin(0.5), root - 1, -3.5],
-        [3.5, 12.25, 6.0, sine, root + 3 / (2 * root) + 1, 3.5],
-        strict=True,
-    ):
+    sine, root = math.sin(0.5) + math.cos(0.5) * 3.5, math.sqrt(3.0)
+    cases = {
+        # expression: value, measure at x = 2, v = 1.5
+        x - v: (0.5, 3.5),
+        (x - v) ** 2: (0.25, 12.25),
+        3 / (x - v): (6.0, 6.0),
+        ca.sin(x - v): (math.sin(0.5), sine),
+        ca.sqrt(x * v) - 1: (root - 1, root + 3 / (2 * root) + 1),
+        -(x + v): (-3.5, 3.5),
+        ca.fmin(x - v, 1): (0.5, 3.5),
+        ca.fmax(x - v, 1): (1.0, 1.0),
+        ca.if_else(x < v, x + v, x - v): (0.5, 3.5),
+        ca.log(x): (math.log(2.0), math.log(2.0) + 1.0),
+        ca.atan2(x, v): (math.atan2(2.0, 1.5), math.atan2(2.0, 1.5) + 6.0 / 6.25),
+        ca.tanh(v): (math.tanh(1.5), math.tanh(1.5) + 1.5 / math.cosh(1.5) ** 2),
+        x**0.3: (2.0**0.3, 2.0**0.3 * (1 + 0.3 + 0.3 * math.log(2.0))),
+        ca.fabs(v - x): (0.5, 3.5),
+    }
+    found = Exact(oscillator, cases).at({"x.position": 2.0, "x.rate": 1.5})
+    for (value, size), (expected, measure) in zip(found, cases.values(), strict=True):
         assert float(value) == pytest.approx(expected, rel=1e-15)
         assert size == pytest.approx(measure, rel=1e-15)
     with mpmath.workdps(DIGITS):
         assert abs(found[3][0] - mpmath.sin(mpmath.mpf("0.5"))) < mpmath.mpf(10) ** -49
+
+
+def test_outside_its_domain_a_function_has_no_value() -> None:
+    oscillator = model("van_der_pol")
+    x = oscillator["position"]
+    exprs = [ca.sqrt(x) + 1, ca.log(x), 1 / (x + 2), ca.asin(x), x**0.5 * 2, ca.sin(x)]
+    values = [value for value, _ in Exact(oscillator, exprs).at({"x.position": -2.0})]
+    assert [bool(mpmath.isnan(value)) for value in values] == [True, True, True, True, True, False]

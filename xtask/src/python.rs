@@ -29,6 +29,12 @@ pub(crate) fn checkers_of_c() -> Result<PathBuf, String> {
     environment("checking C", "requirements-c.txt")
 }
 
+/// The folder where the environments are, and what else stays from run to run.
+pub(crate) fn cache() -> Result<Option<PathBuf>, String> {
+    let surroundings = Surroundings::of_process().map_err(|failure| failure.to_string())?;
+    Ok(surroundings.cache)
+}
+
 fn environment(purpose: &str, requirements: &str) -> Result<PathBuf, String> {
     let path = shell::root().join("generator").join(requirements);
     let text = fs::read_to_string(&path)

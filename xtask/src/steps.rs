@@ -200,11 +200,15 @@ fn generate_check() -> Result<Outcome, String> {
     passed(shell::program(own).args(["generate", "--check"]))
 }
 
-/// The audit of accuracy with as few points as a gate can wait for, by the program that `cargo test` has built.
+/// The audit of accuracy with as few points as a gate can wait for, by the program that `cargo test` has built. What the oracle
+/// says of them stays in the cache until oracle or table change; what is generated is always compared with it.
 fn accuracy() -> Result<Outcome, String> {
     cargo(&["build", "--workspace", "--bin", "audit"], &FEATURES, &[])?;
     let mut audit = shell::program(shell::target().join("debug/audit"));
     audit.args(["--points", "100", "--root"]).arg(shell::root());
+    if let Some(cache) = python::cache()? {
+        audit.arg("--cache").arg(cache.join("audit"));
+    }
     passed(audit.arg("--python").arg(python::development()?))
 }
 

@@ -26,7 +26,7 @@ pub(crate) fn runners() -> Result<Vec<Runner<'static>>, String> {
         return Err("error: members side by side end elsewhere than alone".to_owned());
     }
     let alone = "rustc -O, thin LTO, baseline target; one flight after the other";
-    let lanes = "the same, 8 flights side by side, x86-64-v3 chosen at run time";
+    let lanes = "the same, 8 flights side by side, AVX2 or AVX-512 chosen at run time";
     let values = |x: &State<f64>| x.to_array().to_vec();
     Ok(vec![
         Runner::new(PRODUCT, alone, UNITS[0], scalar, values),

@@ -59,6 +59,8 @@ pub struct Provenance {
 pub enum Basis {
     /// Further arguments of a function.
     Argument,
+    /// Where the equations of motion go over to another formula.
+    Boundary,
     /// Inputs.
     Input,
     /// Quantities that people look at.

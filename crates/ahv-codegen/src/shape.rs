@@ -39,6 +39,7 @@ impl<'a> Shape<'a> {
                 Basis::Input => "Input",
                 Basis::Noise => "Noise",
                 Basis::Output => "Outputs",
+                Basis::Boundary => "Boundaries",
                 Basis::Parameter => "Parameters",
                 Basis::Mode => "",
                 Basis::Argument => return Err(no_form(model, output)),

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use ahv_table::{degrees, in_radians};
+
 use crate::ir::{Document, Parameter, UnitSystem, Units, Variable};
 use crate::{EmitError, Table};
 
@@ -16,7 +18,12 @@ pub(crate) struct Values {
     pub(crate) sets: Vec<Vec<(String, f64)>>,
     /// Ends of the validity box, angles in rad.
     pub(crate) bounds: Vec<(f64, f64)>,
+    /// Of each set the numbers that the table has in degrees, by the parameter's name: how they are computed from those.
+    pub(crate) written: Vec<HashMap<String, String>>,
 }
+
+/// The name of a degree in rad where a number is computed from it.
+pub(crate) const DEGREE: &str = "DEGREE";
 
 impl Values {
     /// Reads the numbers that a document names, and turns document and numbers into the unit system `system`.
@@ -29,17 +36,21 @@ impl Values {
             nominal: Vec::new(),
             sets: Vec::new(),
             bounds: Vec::new(),
+            written: vec![HashMap::new(); document.sets.len()],
         };
         for parameter in &document.parameters {
             found.nominal.push(value(table, document, parameter)?);
+            let (section, key) = &parameter.path;
+            found.note(0, &parameter.name, table, &[section, key]);
         }
-        for set in &document.sets {
-            let replaced = set.parameters.iter().map(|replacement| {
-                let mut path: Vec<&str> = replacement.path.iter().map(String::as_str).collect();
-                path.push("value");
-                Ok((replacement.name.clone(), number(table, &path)?))
-            });
-            found.sets.push(replaced.collect::<Result<_, EmitError>>()?);
+        for (index, set) in document.sets.iter().enumerate() {
+            let mut replaced = Vec::new();
+            for replacement in &set.parameters {
+                let path: Vec<&str> = replacement.path.iter().map(String::as_str).collect();
+                replaced.push((replacement.name.clone(), entry(table, &path)?));
+                found.note(index, &replacement.name, table, &path);
+            }
+            found.sets.push(replaced);
         }
         for variable in &document.validity {
             found.bounds.push(bounds(table, variable)?);
@@ -48,6 +59,25 @@ impl Values {
             found.convert(document)?;
         }
         Ok(found)
+    }
+
+    /// Keeps how the number of an entry in degrees is computed.
+    fn note(&mut self, set: usize, name: &str, table: &Table, path: &[&str]) {
+        let degrees = degrees_of(table, path);
+        let printed = table.number(&[path, &["value"]].concat());
+        if let (Some(printed), Some(written)) = (printed, self.written.get_mut(set))
+            && degrees != 0
+        {
+            let step = if degrees > 0 { " * " } else { " / " };
+            let steps = format!("{step}{DEGREE}").repeat(degrees.unsigned_abs() as usize);
+            written.insert(name.to_owned(), format!("{printed:?}{steps}"));
+        }
+    }
+
+    /// A number of a set as Rust.
+    pub(crate) fn text(&self, set: usize, name: &str, value: f64) -> String {
+        let written = self.written.get(set).and_then(|written| written.get(name));
+        written.cloned().unwrap_or_else(|| format!("{value:?}"))
     }
 
     fn convert(&mut self, document: &mut Document) -> Result<(), EmitError> {
@@ -62,6 +92,12 @@ impl Values {
             let factor = from.convert(&mut parameter.unit)?;
             *value *= factor;
             scales.insert(parameter.name.clone(), factor);
+        }
+        for (name, written) in self.written.iter_mut().flatten() {
+            let factor = scales.get(name).copied().unwrap_or(1.0);
+            if factor != 1.0 {
+                *written += &format!(" * {factor:?}");
+            }
         }
         for (name, value) in self.sets.iter_mut().flatten() {
             *value *= scales.get(name).copied().unwrap_or(1.0);
@@ -131,6 +167,18 @@ impl Units {
     }
 }
 
+/// The number of an entry, with angles in rad.
+fn entry(table: &Table, path: &[&str]) -> Result<f64, EmitError> {
+    let value = number(table, &[path, &["value"]].concat())?;
+    Ok(in_radians(value, degrees_of(table, path)))
+}
+
+/// The degrees in the unit of an entry; other units than that of the model are refused by the derivation.
+fn degrees_of(table: &Table, path: &[&str]) -> i32 {
+    let unit = table.text(&[path, &["unit"]].concat());
+    unit.and_then(degrees).unwrap_or(0)
+}
+
 fn number(table: &Table, path: &[&str]) -> Result<f64, EmitError> {
     table.number(path).ok_or_else(|| {
         EmitError::Mismatch(format!(
@@ -145,7 +193,7 @@ fn number(table: &Table, path: &[&str]) -> Result<f64, EmitError> {
 fn value(table: &Table, document: &Document, parameter: &Parameter) -> Result<f64, EmitError> {
     let (section, key) = (parameter.path.0.as_str(), parameter.path.1.as_str());
     if section != CHOICES {
-        return number(table, &[section, key, "value"]);
+        return entry(table, &[section, key]);
     }
     let chosen = table.text(&[section, key]).unwrap_or_default();
     let choice = document.choices.iter().find(|choice| choice.name == key);
@@ -160,13 +208,13 @@ fn value(table: &Table, document: &Document, parameter: &Parameter) -> Result<f6
 }
 
 fn bounds(table: &Table, variable: &Variable) -> Result<(f64, f64), EmitError> {
-    let path = |key| ["validity", variable.name.as_str(), key];
-    let unit = table.text(&path("unit")).unwrap_or_default();
-    let (min, max) = (number(table, &path("min"))?, number(table, &path("max"))?);
-    // Other units than that of the model are refused by the derivation.
-    Ok(if unit.contains("deg") {
-        (min.to_radians(), max.to_radians())
-    } else {
-        (min, max)
-    })
+    let path = ["validity", variable.name.as_str()];
+    let degrees = degrees_of(table, &path);
+    let end = |key| {
+        Ok(in_radians(
+            number(table, &[path[0], path[1], key])?,
+            degrees,
+        ))
+    };
+    Ok((end("min")?, end("max")?))
 }

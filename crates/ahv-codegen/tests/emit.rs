@@ -281,6 +281,57 @@ fn si_is_another_package_in_numbers_and_units_alone() {
     assert!(si["src/lib.rs"].contains("metre, kilogram, second and radian"));
 }
 
+/// A model with a kink has the function whose zero is there; one without has none.
+#[test]
+fn a_kink_of_the_drift_is_a_boundary() {
+    let folder = root().join("examples/winged-cone");
+    let text = fs::read_to_string(folder.join("winged_cone.toml")).unwrap();
+    let ir = fs::read_to_string(folder.join("generated/ir/winged_cone.json")).unwrap();
+    let irs = [("winged_cone".to_owned(), ir)].into();
+    let cone = Table::parse("winged_cone.toml", &text).unwrap();
+    for language in [Target::Rust, Target::C] {
+        let options = Options {
+            target: language,
+            ..Options::default()
+        };
+        let tree = emit(std::slice::from_ref(&cone), &irs, &options).unwrap();
+        let mut texts = tree.values();
+        let line = "thrust_coefficient_boundary";
+        assert!(texts.any(|text| text.contains(line)), "{language:?}");
+    }
+    let tree = emit(&TABLES.map(table), &irs(), &Options::default()).unwrap();
+    assert!(!tree.keys().any(|path| path.contains("boundaries")));
+}
+
+/// The printed number stands in the code.
+#[test]
+fn a_value_per_degree_is_written_as_it_is_printed() {
+    let text = fs::read_to_string(root().join("generator/tables/com.toml")).unwrap();
+    let text = text
+        .replacen(
+            r#""alpha" = { value = 4.6773, unit = "1/rad" }"#,
+            r#""alpha" = { value = 0.0816, unit = "1/deg" }"#,
+            1,
+        )
+        .replacen(
+            r#""alpha^2" = { value = 5.8224, unit = "1/rad^2" }"#,
+            r#""alpha^2" = { value = 0.0018, unit = "1/deg^2" }"#,
+            1,
+        );
+    let per_degree = Table::parse("com.toml", &text).unwrap();
+    let tree = emit(&[per_degree], &irs(), &Options::default()).unwrap();
+    let nominal = &tree["src/com/nominal.rs"];
+    for line in [
+        "const DEGREE: f64 = core::f64::consts::PI / 180.0;",
+        "    c_l_alpha: 0.0816 / DEGREE,",
+        "    c_d_alpha_2: 0.0018 / DEGREE / DEGREE,",
+    ] {
+        assert!(nominal.contains(line), "{line} is not in {nominal}");
+    }
+    let plain = emit(&[table("com")], &irs(), &Options::default()).unwrap();
+    assert!(!plain["src/com/nominal.rs"].contains("DEGREE"));
+}
+
 #[test]
 fn tables_in_two_unit_systems_need_a_choice() {
     let mut irs = irs();

@@ -239,8 +239,11 @@ fn row(line: &str) -> Option<(Vec<f64>, Vec<Reference>)> {
     ))
 }
 
-/// The error of a value in units of 2⁻⁵²·K.
+/// The error of a value in units of 2⁻⁵²·K; none outside the domain of a function, where the reference is NaN.
 fn error(value: f64, reference: &Reference) -> f64 {
+    if reference.high.is_nan() {
+        return 0.0;
+    }
     let difference = ((value - reference.high) - reference.low).abs();
     if difference == 0.0 {
         0.0

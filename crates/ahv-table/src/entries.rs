@@ -3,7 +3,7 @@
 use toml_edit::{Item, TableLike};
 
 use crate::fault::{shortened, suggestion};
-use crate::unit::{self, Unit};
+use crate::unit::{self, Unit, degrees, in_radians};
 use crate::{Fault, Part, Quantity, Text};
 
 const KEYS: [&str; 5] = ["value", "unit", "source", "status", "uncertainty"];
@@ -87,12 +87,11 @@ impl<'a> Entries<'a> {
         let value = entry
             .get("value")
             .and_then(|value| self.number(value, &[path, &["value"]].concat()));
-        if let Some(unit) = entry.get("unit") {
-            self.unit(unit, &[path, &["unit"]].concat(), expected, false);
-        }
+        let unit = entry.get("unit");
+        let degrees = unit.and_then(|unit| self.unit(unit, &[path, &["unit"]].concat(), expected));
         let uncertainty = self.provenance(entry, path);
         Some(Quantity {
-            value: value?,
+            value: in_radians(value?, degrees.unwrap_or(0)),
             uncertainty,
         })
     }
@@ -118,15 +117,8 @@ impl<'a> Entries<'a> {
         }
     }
 
-    /// The size of a unit in terms of the expected one: 1, or a degree in rad where an angle may be in `degrees`; `None`
-    /// for other units.
-    pub(crate) fn unit(
-        &mut self,
-        item: &Item,
-        path: &[&str],
-        expected: &str,
-        degrees: bool,
-    ) -> Option<f64> {
+    /// The [`degrees`] of a unit that is the expected one, or that with degrees for radians; `None` for other units.
+    pub(crate) fn unit(&mut self, item: &Item, path: &[&str], expected: &str) -> Option<i32> {
         let Some(text) = item.as_str() else {
             self.value("unit", path, "`unit` must be a text", "");
             return None;
@@ -141,13 +133,12 @@ impl<'a> Entries<'a> {
             self.value("unit", path, &message, &help);
             return None;
         };
-        let wanted = if degrees && text.contains("deg") {
-            Unit::DEGREE
-        } else {
-            1.0
-        };
+        let degrees = degrees(text);
+        let wanted = degrees.map(|degrees| in_radians(1.0, degrees));
         match Unit::parse(expected).and_then(|expected| found.in_terms_of(&expected)) {
-            Some(ratio) if (ratio / wanted - 1.0).abs() < 1e-9 => Some(wanted),
+            Some(ratio) if wanted.is_some_and(|wanted| (ratio / wanted - 1.0).abs() < 1e-9) => {
+                degrees
+            }
             Some(_) => {
                 let system = self.system;
                 let message =

@@ -66,3 +66,95 @@ fn text(item: &Item) -> String {
         None => shown(item),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use ahv_core::Table;
+
+    use crate::{Family, Fault, Text, check};
+
+    static TABLE: Table = Table {
+        name: "t",
+        models: &["a", "b"],
+        unit_system: "si",
+        entries: &[],
+        choices: &[],
+        joins: &[
+            ["parts", "gust", "part", "dryden"],
+            ["parts", "gust", "state", "alpha"],
+            ["joined", "b", "model", "a"],
+            ["joined", "b", "parts", "gust"],
+        ],
+        validity: &[],
+        rules: &[],
+    };
+    const TEXT: &str = "[table]\nname = \"t\"\nfamily = \"t.py\"\nmodels = [\"a\", \"b\"]\nunits = \"si\"\nset = \"own\"\n\
+        source = \"s\"\nstatus = \"assumed\"\nuncertainty = 0.1\n[sources]\ns = \"nobody\"\n[validity]\n[emit]\nfunctions = []\n\
+        [parts]\ngust = { part = \"dryden\", state = \"alpha\" }\n[joined.b]\nmodel = \"a\"\ntitle = \"A in a gust\"\nparts = [\"gust\"]\n";
+
+    /// Rule, path and message of each fault of the table with a change.
+    fn faults(from: &str, to: &str) -> Vec<(&'static str, Vec<String>, String)> {
+        assert!(TEXT.contains(from), "no {from:?}");
+        let text = Text::parse(TEXT.replacen(from, to, 1)).expect("TOML");
+        let family = Family {
+            table: &TABLE,
+            names: &[],
+            units: &[],
+            si_units: &[],
+        };
+        let found = check(&text, &[family]).err().unwrap_or_default();
+        let said = |fault: Fault| (fault.rule, fault.path.clone(), fault.to_string());
+        found.into_iter().map(said).collect()
+    }
+
+    #[test]
+    fn the_parts_that_were_compiled_are_accepted_whatever_their_title() {
+        assert_eq!(faults("A in a gust", "another title"), []);
+        // A table of the first model has no use for them.
+        let (start, _) = TEXT.split_once("[parts]").expect("parts");
+        let alone = start.replacen("[\"a\", \"b\"]", "[\"a\"]", 1);
+        assert_eq!(faults(TEXT, &alone), []);
+    }
+
+    #[test]
+    fn other_parts_need_generation() {
+        for (from, to, path, said) in [
+            (
+                "state = \"alpha\"",
+                "state = \"gamma\"",
+                vec!["parts", "gust", "state"],
+                "another `state` of `gust`",
+            ),
+            (
+                "\"dryden\"",
+                "\"gust.py\"",
+                vec!["parts", "gust", "part"],
+                "another `part` of `gust`",
+            ),
+            (
+                "parts = [\"gust\"]",
+                "parts = [\"gust\", \"gust\"]",
+                vec!["joined", "b", "parts"],
+                "another `parts` of `b`",
+            ),
+            (
+                ", state = \"alpha\"",
+                "",
+                vec!["parts"],
+                "made with `gust.state` = `alpha`",
+            ),
+        ] {
+            let [(rule, found, message)] = faults(from, to).try_into().expect("one fault");
+            assert_eq!(
+                (rule, found),
+                (
+                    "needs-generation",
+                    path.iter().map(|it| (*it).to_owned()).collect()
+                )
+            );
+            assert!(message.contains(said), "{message}");
+        }
+        let (without, _) = TEXT.split_once("[parts]").expect("parts");
+        assert_eq!(faults(TEXT, without).len(), TABLE.joins.len());
+    }
+}

@@ -266,7 +266,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// An interval, with angles in rad; an angle may be in deg here.
+    /// An interval, with angles in rad.
     fn interval(&mut self, interval: &Interval, item: &Item) -> Option<Bounds> {
         let path = [VALIDITY, interval.name];
         let entries = &mut self.entries;
@@ -298,7 +298,8 @@ impl<'a> Reader<'a> {
             _ => interval.unit.to_owned(),
         };
         let path = [VALIDITY, interval.name, "unit"];
-        let factor = entries.unit(unit, &path, &expected, true)?;
-        Some(Bounds::new(min? * factor, max? * factor))
+        let degrees = entries.unit(unit, &path, &expected)?;
+        let [min, max] = [min?, max?].map(|end| unit::in_radians(end, degrees));
+        Some(Bounds::new(min, max))
     }
 }

@@ -54,6 +54,25 @@ pub(crate) fn in_si(mut text: &str) -> String {
     converted
 }
 
+/// By how many degrees a unit of a table differs from the same in radians: 1 for `deg`, -2 for `1/deg^2`, 0 for `m`; `None` if it
+/// is no unit, or if that is no whole number.
+pub fn degrees(unit: &str) -> Option<i32> {
+    let [given, plain] = [unit.to_owned(), unit.replace("deg", "rad")].map(|it| Unit::parse(&it));
+    let ratio = given?.in_terms_of(&plain?)?.ln() / Unit::DEGREE.ln();
+    ((ratio - ratio.round()).abs() < 1e-6).then_some(ratio.round() as i32)
+}
+
+/// A value in so many [`degrees`] in radians: by one multiplication or division for each, so that it has the same bits everywhere.
+pub fn in_radians(value: f64, degrees: i32) -> f64 {
+    (0..degrees.abs()).fold(value, |value, _| {
+        if degrees > 0 {
+            value * Unit::DEGREE
+        } else {
+            value / Unit::DEGREE
+        }
+    })
+}
+
 impl Unit {
     const ONE: Self = Self {
         powers: [0.0; 5],
@@ -160,7 +179,7 @@ fn taken<'a>(rest: &mut &'a str, wanted: impl Fn(char) -> bool) -> &'a str {
 
 #[cfg(test)]
 mod tests {
-    use super::{Unit, in_si};
+    use super::*;
 
     fn ratio(one: &str, other: &str) -> Option<f64> {
         let [one, other] = [one, other].map(|text| Unit::parse(text).expect("a unit"));
@@ -209,5 +228,24 @@ mod tests {
             assert_eq!(Unit::parse(&text), None, "{depth}");
             assert_eq!(Unit::parse(&"(".repeat(depth)), None, "{depth}");
         }
+    }
+
+    #[test]
+    fn degrees_are_counted_and_converted_one_by_one() {
+        for (unit, count) in [
+            ("deg", 1),
+            ("1/deg", -1),
+            ("1/deg^2", -2),
+            ("ft*deg/s/deg", 0),
+            ("rad^2/deg", -1),
+            ("slug/ft^3", 0),
+        ] {
+            assert_eq!(degrees(unit), Some(count), "{unit}");
+        }
+        assert_eq!(degrees("deg^0.5"), None);
+        assert_eq!(degrees("furlong"), None);
+        assert_eq!(in_radians(180.0, 1), std::f64::consts::PI);
+        let turn = std::f64::consts::PI / 180.0;
+        assert_eq!(in_radians(0.3, -2), 0.3 / turn / turn);
     }
 }

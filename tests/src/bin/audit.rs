@@ -2,11 +2,13 @@
 #![forbid(unsafe_code)]
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use ahv_codegen::sha256;
 use ahv_tests::evaluate::{MODELS, evaluate};
 use ahv_tests::measure::{Worst, compare};
 use ahv_tests::vectors::read_oracle;
@@ -30,6 +32,9 @@ struct Arguments {
     /// The project's folder.
     #[arg(long, default_value = ".")]
     root: PathBuf,
+    /// Folder where the oracle's values stay for the next audit of the same points.
+    #[arg(long)]
+    cache: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -85,8 +90,13 @@ fn audit_all(arguments: &Arguments) -> Vec<Report> {
 /// Audits one model.
 fn audit(arguments: &Arguments, model: &str, table: &str) -> Report {
     let folder = tempfile::tempdir().map_err(|e| format!("no temporary folder: {e}"))?;
-    let file = folder.path().join("vectors.txt");
-    draw(arguments, model, table, &file)?;
+    let file = match &arguments.cache {
+        Some(cache) => kept(arguments, cache, model, table)?,
+        None => folder.path().join("vectors.txt"),
+    };
+    if !file.exists() {
+        draw(arguments, model, table, &file)?;
+    }
     let mut worst: BTreeMap<String, Worst> = BTreeMap::new();
     for point in read_oracle(&file) {
         compare(&point, &evaluate::<f64>(model, &point.inputs), &mut worst);
@@ -110,6 +120,55 @@ fn audit(arguments: &Arguments, model: &str, table: &str) -> Report {
         text += &format!("  worst point: {}\n", point.join(" "));
     }
     Ok((text, worst.values().all(|found| found.error <= BAR)))
+}
+
+/// The file in the cache for the oracle's values of a model. Its name holds the hash of all that they depend on; files of other
+/// hashes are removed.
+fn kept(arguments: &Arguments, cache: &Path, model: &str, table: &str) -> Result<PathBuf, String> {
+    let generator = arguments.root.join("generator");
+    let mut sources = entries(&generator.join("ahv_oracle"))?;
+    sources.retain(|path| path.extension().is_some_and(|it| it == "py"));
+    sources.push(generator.join("requirements-dev.txt"));
+    sources.push(generator.join(format!("tables/{table}.toml")));
+    let Arguments {
+        points,
+        seed,
+        python,
+        ..
+    } = arguments;
+    let mut all = format!(
+        "{model}, {points} points, seed {seed}, {}\n",
+        python.display()
+    );
+    for path in sources {
+        all += &fs::read_to_string(&path).map_err(problem("read", &path))?;
+    }
+    let of_model = format!("{model}-");
+    let name = format!("{of_model}{}.txt", sha256(&all));
+    fs::create_dir_all(cache).map_err(problem("make", cache))?;
+    for path in entries(cache)? {
+        let found = path.file_name().unwrap_or_default().to_string_lossy();
+        if found.starts_with(&of_model) && found != *name {
+            fs::remove_file(&path).map_err(problem("remove", &path))?;
+        }
+    }
+    Ok(cache.join(name))
+}
+
+/// What lies in a folder, in the order of the names.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let found = fs::read_dir(folder).map_err(problem("read", folder))?;
+    let mut paths: Vec<_> = found
+        .map(|entry| entry.map(|it| it.path()))
+        .collect::<Result<_, _>>()
+        .map_err(problem("read", folder))?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn problem(deed: &str, path: &Path) -> impl FnOnce(std::io::Error) -> String {
+    let message = format!("cannot {deed} {}", path.display());
+    move |error| format!("{message}: {error}")
 }
 
 fn draw(arguments: &Arguments, model: &str, table: &str, file: &Path) -> Result<(), String> {

@@ -154,6 +154,24 @@ where
     }
 }
 
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+impl<F: GeneratedModel, S: Copy, A, E> Advance<'_, '_, '_, F, S, (A, E)> {
+    /// Steps member after member, with the instructions that every machine has.
+    fn one_by_one(self)
+    where
+        E: Member<F>,
+        S: Steps<<Called<E> as Member<F>>::Model>,
+    {
+        let work = Advance {
+            batch: self.batch,
+            observers: self.observers,
+            until: self.until,
+            arithmetic: PhantomData::<(Called<E>, E)>,
+        };
+        pulp::WithSimd::with_simd(work, pulp::Scalar);
+    }
+}
+
 /// Steps one member.
 #[inline(always)]
 fn step<F, S, A>(
@@ -199,8 +217,8 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
 
     /// Flies until before this step, with the instructions of the machine.
     ///
-    /// On x86 without AVX2 and FMA members are stepped one by one: a second copy of every loop for machines of the past would
-    /// double the time that it takes to compile this.
+    /// On x86 those are AVX-512, where all members fill a register, or AVX2 and FMA. Without either members are stepped one by
+    /// one: a copy more of every loop, for machines of the past, would take long to compile.
     #[inline(never)]
     pub(super) fn advance<A, E>(&mut self, until: u64, observers: &mut Observers<'_, F>)
     where
@@ -208,34 +226,26 @@ impl<'c, F: GeneratedModel, S: Copy> Batch<'c, F, S> {
         E: Member<F>,
         S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
     {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        match pulp::x86::V3::try_new() {
-            Some(machine) if A::SIDE_BY_SIDE => pulp::Simd::vectorize(
-                machine,
-                Advance {
-                    batch: self,
-                    observers,
-                    until,
-                    arithmetic: PhantomData::<(A, E)>,
-                },
-            ),
-            _ => pulp::WithSimd::with_simd(
-                Advance {
-                    batch: self,
-                    observers,
-                    until,
-                    arithmetic: PhantomData::<(Called<E>, E)>,
-                },
-                pulp::Scalar,
-            ),
-        }
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        pulp::Arch::new().dispatch(Advance {
+        let work = Advance {
             batch: self,
             observers,
             until,
             arithmetic: PhantomData::<(A, E)>,
-        });
+        };
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if A::SIDE_BY_SIDE {
+            if let Some(machine) = pulp::x86::V4::try_new() {
+                pulp::Simd::vectorize(machine, work);
+            } else if let Some(machine) = pulp::x86::V3::try_new() {
+                pulp::Simd::vectorize(machine, work);
+            } else {
+                work.one_by_one();
+            }
+        } else {
+            work.one_by_one();
+        }
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        pulp::Arch::new().dispatch(work);
     }
 
     /// The state of a member; of one that is lost the last that was finite.

@@ -100,6 +100,11 @@ impl Types {
                 "One value for each independent Wiener process",
             ),
             vector(Basis::Output, "Outputs", "Quantities that are not states"),
+            vector(
+                Basis::Boundary,
+                "Boundaries",
+                "One function for each boundary between formulas",
+            ),
         ];
         let stages = [&program.prepared].into_iter().chain(&program.stages);
         let vectors = vectors.into_iter().filter(|it| !it.fields.is_empty());

@@ -62,7 +62,7 @@ impl<'a> Printer<'a> {
                 Basis::Input => "u",
                 Basis::Noise => "w",
                 Basis::Parameter => "p",
-                Basis::Argument | Basis::Mode | Basis::Output => "t",
+                Basis::Argument | Basis::Boundary | Basis::Mode | Basis::Output => "t",
             };
             for variable in members {
                 leaves.insert(

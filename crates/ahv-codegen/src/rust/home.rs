@@ -21,6 +21,8 @@ struct ParametersTemplate<'a> {
 struct NominalTemplate<'a> {
     system: &'a str,
     own_set: &'a str,
+    /// Whether a number is computed from one in degrees.
+    has_degrees: bool,
     values: Vec<(String, String)>,
     sets: Vec<SetText>,
     bounds: Vec<(String, String, String)>,
@@ -166,16 +168,19 @@ fn nominal<'a>(document: &'a Document, values: &Values) -> NominalTemplate<'a> {
     NominalTemplate {
         system: document.units.system.name(),
         own_set: document.sets.first().map_or("", |set| &set.name),
+        has_degrees: values.written.iter().any(|written| !written.is_empty()),
         values: names
-            .zip(values.nominal.iter().map(|v| format!("{v:?}")))
+            .zip(&values.nominal)
+            .map(|(name, &value)| (name.clone(), values.text(0, &name, value)))
             .collect(),
         sets: sets
-            .map(|(set, replaced)| SetText {
+            .zip(1..)
+            .map(|((set, replaced), index)| SetText {
                 name: set.name.clone(),
                 constant: constant(&set.name),
                 values: replaced
                     .iter()
-                    .map(|(name, v)| (name.clone(), format!("{v:?}")))
+                    .map(|(name, v)| (name.clone(), values.text(index, name, *v)))
                     .collect(),
             })
             .collect(),

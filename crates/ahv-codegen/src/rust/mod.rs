@@ -228,6 +228,10 @@ fn vectors(model: &ir::Model) -> Vec<Vector<'_>> {
     }
     let doc = "Quantities that people look at";
     vectors.push(vector("Outputs", doc, Basis::Output, None));
+    if model.bases.contains_key(&Basis::Boundary) {
+        let doc = "One function for each boundary at which the equations of motion go over to another formula";
+        vectors.push(vector("Boundaries", doc, Basis::Boundary, None));
+    }
     vectors
 }
 

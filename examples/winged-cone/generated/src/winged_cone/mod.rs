@@ -2,6 +2,7 @@
 
 //! WINGED_CONE: winged cone, control-oriented, eq. (1)-(5).
 
+mod boundaries;
 mod description;
 mod drift;
 mod hessian;
@@ -15,6 +16,7 @@ mod provenance;
 mod stages;
 mod table;
 
+pub use boundaries::*;
 pub use drift::*;
 pub use hessian::*;
 pub use jacobians::*;
@@ -96,8 +98,16 @@ ahv_core::vector! {
     }
 }
 
+ahv_core::vector! {
+    /// One function for each boundary at which the equations of motion go over to another formula of WINGED_CONE.
+    pub struct Boundaries<T> {
+        /// 0 where thrust_coefficient goes over to another formula, dimensionless.
+        thrust_coefficient_boundary: ["1", "1", 1.0],
+    }
+}
+
 #[cfg(feature = "nalgebra")]
-ahv_core::impl_nalgebra!(State by State, Input, Outputs);
+ahv_core::impl_nalgebra!(State by State, Input, Outputs, Boundaries);
 
 /// ∂f/∂x: `jacobian.velocity.altitude` is the derivative of the first component's rate with respect to the second.
 pub type StateJacobian<T> = State<State<T>>;
