@@ -78,11 +78,11 @@ pub fn poles(system: &LinearSystem, modes: &[ModeOfMotion]) -> Result<Vec<Pole>,
     Ok(modes::named(modes, &system.states, &found))
 }
 
-/// The poles of some states, each with the participation of all states.
-fn of_block(
-    balanced: &DMatrix<f64>,
-    block: &[usize],
-) -> Result<Vec<(Complex<f64>, DVector<f64>)>, PolesError> {
+/// A pole with the participation of each state.
+type Found = (Complex<f64>, DVector<f64>);
+
+/// The poles of some states.
+fn of_block(balanced: &DMatrix<f64>, block: &[usize]) -> Result<Vec<Found>, PolesError> {
     let n = block.len();
     let eigen = Mat::from_fn(n, n, |row, column| balanced[(block[row], block[column])])
         .eigen()

@@ -1,9 +1,8 @@
 //! Which pole belongs to which mode.
 
 use ahv_core::ModeOfMotion;
-use nalgebra::{Complex, DVector};
 
-use super::Pole;
+use super::{Found, Pole};
 
 /// A mode with its states, and the poles that it has not been given yet.
 struct Group {
@@ -16,11 +15,7 @@ struct Group {
 ///
 /// A mode has as many poles as states. Poles, pairs together, go to the mode whose states participate most, the
 /// clearest cases first.
-pub(super) fn named(
-    modes: &[ModeOfMotion],
-    states: &[&str],
-    found: &[(Complex<f64>, DVector<f64>)],
-) -> Vec<Pole> {
+pub(super) fn named(modes: &[ModeOfMotion], states: &[&str], found: &[Found]) -> Vec<Pole> {
     let mut poles: Vec<Pole> = found
         .iter()
         .map(|&(value, _)| Pole {
@@ -102,6 +97,8 @@ fn tell_slowest(mode: &ModeOfMotion, poles: &mut [Pole]) {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Complex, DVector};
+
     use super::*;
 
     /// With some parameters the phugoid is a slow divergence and a slow decay, in which the altitude participates more than
