@@ -18,8 +18,7 @@ ahv_core::entries! {
 /// No operations.
 #[inline(always)]
 pub fn hessian_values<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> HessianEntries<R> {
-    let hessian = HessianEntries::splat(R::ZERO);
-    hessian
+    HessianEntries::splat(R::ZERO)
 }
 
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).

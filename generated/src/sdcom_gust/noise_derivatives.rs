@@ -18,8 +18,7 @@ ahv_core::entries! {
 /// No operations.
 #[inline(always)]
 pub fn noise_derivatives_values<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
-    let noise_derivatives = NoiseDerivativesEntries::splat(R::ZERO);
-    noise_derivatives
+    NoiseDerivativesEntries::splat(R::ZERO)
 }
 
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).

@@ -136,7 +136,7 @@ mod tests {
             "a_value_with_a_long_name",
             "another_value_with_a_name_as_long",
         );
-        let one = format!("let x = {long} * {name} + {long} * {name};");
+        let one = format!("let x = {long} * {name} + {name};");
         assert!(
             one.len() > 89 && body(&one) == format!("    {one}\n"),
             "{}",

@@ -276,8 +276,9 @@ fn own(program: &Program<'_>, function: &Function<'_>) -> FunctionText {
             continue;
         };
         let name = result_name(function, position);
-        let mutable = if here.is_empty() { "" } else { "mut " };
-        statements.push(format!("let {mutable}{name} = {of}::splat(R::ZERO);"));
+        if !here.is_empty() {
+            statements.push(format!("let mut {name} = {of}::splat(R::ZERO);"));
+        }
         places.extend(here.map(|entry| Some(place(function, entry))));
         results.push(format!("{of}<R>"));
     }
@@ -320,8 +321,13 @@ fn values(
     let mut outputs = Vec::new();
     for (position, shape) in function.shapes.iter().enumerate() {
         let output = &function.ir.outputs[position];
-        if function.ir.compressed && shape.entries().is_some() {
-            outputs.push((output.name.clone(), result_name(function, position)));
+        if let Some(entries) = shape.entries().filter(|_| function.ir.compressed) {
+            let value = if output.entries.is_empty() {
+                format!("{}::splat(R::ZERO)", entries.name)
+            } else {
+                result_name(function, position)
+            };
+            outputs.push((output.name.clone(), value));
             continue;
         }
         let (values, rest) = results.split_at(output.entries.len());
