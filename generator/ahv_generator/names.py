@@ -16,7 +16,8 @@ _KEYWORDS = frozenset(
 
 # A set becomes a constant of the generated code; these stand beside it. A test holds them against `generated/`.
 _CONSTANTS = frozenset(
-    "nominal provenance sets unit_system validity state_bounds input_bounds noise_class noise_commutes table".split()
+    "nominal provenance sets unit_system validity state_bounds input_bounds noise_class noise_commutes table"
+    " degree".split()
 )
 # So end the constants of the functions' compressed outputs, which no set's may: what these are called, the models say.
 _OF_FUNCTIONS = "_pattern"

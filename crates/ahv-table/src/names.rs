@@ -10,7 +10,7 @@ const KEYWORDS: &str = " abstract as async await become box break const continue
 
 /// What stands in a generated module beside the constants of the sets.
 const CONSTANTS: &str = " nominal provenance sets unit_system validity state_bounds input_bounds noise_class \
-    noise_commutes table ";
+    noise_commutes table degree ";
 
 /// Files are named after tables; file systems end names at 255 bytes, with what is added to them.
 const LONGEST_TABLE: usize = 64;
