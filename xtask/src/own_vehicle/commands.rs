@@ -254,7 +254,7 @@ pub(super) const GUSTY: &[Question] = &[
     ),
     (
         "poles --model gusty_cone",
-        &["#/poles = 9", "/modes/7/name = \"gust\""],
+        &["#/poles = 9", "/modes/5/name = \"gust\""],
     ),
     (
         "montecarlo --model gusty_cone --members 1000 --t-end 1 --dt 0.01",
