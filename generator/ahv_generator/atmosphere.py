@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from .model import Model
-from .schema import POSITIVE, Parameter
+from .schema import NOT_ZERO, POSITIVE, Parameter
 
 EXPONENTIAL = (
     Parameter("rho_0", r"\rho_0", "slug/ft^3", "air density at the reference altitude", POSITIVE),
@@ -30,9 +30,12 @@ US_1976 = (
     Parameter("kappa_air", r"\kappa_a", "1", "ratio of the specific heats of air", POSITIVE),
     Parameter("g_0", "g_0", "ft/s^2", "acceleration of gravity of geopotential altitudes", POSITIVE),
     Parameter("r_0", "r_0", "ft", "radius of the Earth of geopotential altitudes", POSITIVE),
-    *(Parameter(f"H_{i}", f"H_{i}", "ft", f"geopotential altitude of the base of layer {i}") for i in _LAYERS[1:]),
     *(
-        Parameter(f"lapse_{i}", f"L_{i}", "K/ft", f"temperature gradient of layer {i}")
+        Parameter(f"H_{i}", f"H_{i}", "ft", f"geopotential altitude of the base of layer {i}", POSITIVE)
+        for i in _LAYERS[1:]
+    ),
+    *(
+        Parameter(f"lapse_{i}", f"L_{i}", "K/ft", f"temperature gradient of layer {i}", NOT_ZERO)
         for i in _LAYERS
         if i not in _ISOTHERMAL
     ),

@@ -54,12 +54,30 @@ class ExpressionError(Exception):
     """An expression that the IR cannot hold, or whose dimensions do not agree."""
 
 
+_number_of = ca.SX.__float__
+
+
+def _float(expr: ca.SX) -> float:
+    # CasADi's own gives NaN for a symbol, with which `math.sin` and `max` go on.
+    if not expr.is_constant():
+        raise ExpressionError(
+            f"a number is needed where `{expr}` stands: of an expression take `sin`, `sqrt`, `fmax`, ... of"
+            " `ahv_generator.modelling`, not those of `math`"
+        )
+    return float(_number_of(expr))
+
+
+ca.SX.__float__ = _float  # type: ignore[method-assign]
+
+
 def tree(expr: ca.SX) -> Tree:
     """The expression as nested lists: a name, a number, or an operator and its arguments.
 
     Sums are n-ary: the depth of the tree does not grow with the number of terms.
     """
     if expr.is_constant():
+        if not expr.is_regular():
+            raise ExpressionError(f"a number in it is not finite: {float(expr)}")
         return float(expr)
     if expr.is_symbolic():
         return str(expr.name())

@@ -55,6 +55,7 @@ class JoinedModel(Model):
     _parts: dict[str, Noted] = field(default_factory=dict)
     _current: str = ""
     _seen: dict[str, ca.SX] = field(default_factory=dict)
+    _reached: set[str] = field(default_factory=set)
     _has_diffusion: bool = False
 
     def __post_init__(self) -> None:
@@ -80,6 +81,11 @@ class JoinedModel(Model):
     def check(self) -> None:
         """Raise `FamilyError` when something is missing; state what the family leaves to the parts."""
         super().check()
+        added = [name for of in self._parts.values() for name in of.added]
+        if unseen := [name for name in added if name not in self._reached]:
+            raise FamilyError(
+                f"no curve fit of `{self.name}` sees `{unseen[0]}`: what a part adds to it would change nothing"
+            )
         if not self._has_diffusion and "noise" in self.bases:
             super().diffusion(self._all_gains(), "the columns are those of the parts", "")
         for instance in self.instances:
@@ -91,12 +97,13 @@ class JoinedModel(Model):
         added = [of.added[name] for of in self._parts.values() if name in of.added]
         if not added:
             return value
+        self._reached.add(name)
         if not value.is_symbolic() or value.name() != f"x.{name}":
             return sum(added, value)
         if name not in self._seen:
             state = self.variable(name)
             doc = f"{state.doc} as curve fits see it"
-            self._seen[name] = self.define(f"{name}_seen", sum(added, value), f"{state.symbol}^*", state.unit, doc)
+            self._seen[name] = self.define(f"{name}_seen", sum(added, value), f"{{{state.symbol}}}^*", state.unit, doc)
         return self._seen[name]
 
     def derivative(self, expr: ca.SX, named: Named | Parameter) -> ca.SX:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -124,7 +125,7 @@ class Model:
         check_texts(symbol, doc)
         if not doc:
             raise FamilyError(f"`{plain}` has no text that says what it is")
-        if any(f"{prefix}.{plain}" in self.graph.symbols for prefix in "xut") or plain in self.graph.symbols:
+        if any(place in self.graph.symbols for place in (plain, *(f"{prefix}.{plain}" for prefix in "xut"))):
             raise FamilyError(f"the name `{plain}` is used twice in `{self.name}`")
         self._units[plain] = unit
         return self.graph.define(
@@ -245,6 +246,7 @@ class Model:
     def outputs(self, *named: Named) -> None:
         """Quantities that commands print and reports show beside the states, as one function and one vector."""
         quantities = [self._defined(one) for one in named if name_of(one) not in self.names("state")]
+        self._refuse_unknown("outputs", (q.name for q in quantities), self.graph.quantities)
         stated = [self._units.get(q.name, q.unit) for q in quantities]
         self.bases["output"] = tuple(
             Variable(q.name, q.symbol, unit, q.doc) for q, unit in zip(quantities, stated, strict=True)
@@ -332,6 +334,9 @@ class Model:
         self.traits.deviations = {name_of(variable): size for variable, size in deviations.items()}
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
+        for name, size in self.traits.deviations.items():
+            if not 0 < size < math.inf:
+                raise FamilyError(f"the deviation of `{name}` is {size!r}; it must be positive and finite")
 
     def note(self, text: str) -> None:
         """A warning that commands print before they use the model."""

@@ -448,4 +448,6 @@ class _Polynomial:
     def _symbol(self, powers: Powers) -> str:
         factors = [(self.variables[name].symbol, exponent) for name, exponent in powers]
         above = " ".join(symbol if k == 1 else f"{symbol}^{k}" for symbol, k in factors) or "0"
-        return f"{self.spec.symbol}^{{{above}}}"
+        # A symbol may have a superscript of its own.
+        base = f"{{{self.spec.symbol}}}" if "^" in self.spec.symbol else self.spec.symbol
+        return f"{base}^{{{above}}}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -24,6 +25,12 @@ def name_of(named: Named | Parameter) -> str:
     raise FamilyError(f"`{named}` has no name: it is neither a variable nor a quantity that was defined")
 
 
+def _check_numbers(of: Named | Parameter, **numbers: object) -> None:
+    for word, number in numbers.items():
+        if not isinstance(number, int | float) or not math.isfinite(number):
+            raise FamilyError(f"`{word}` of `{name_of(of)}` is {number!r}; it must be a finite number")
+
+
 @dataclass(frozen=True)
 class Given:
     """A state or an output that the caller of a trim gives; strictly between `above` and `below`, in its unit.
@@ -35,6 +42,15 @@ class Given:
     default: float
     above: float | None = None
     below: float | None = None
+
+    def __post_init__(self) -> None:
+        limits = {word: limit for word, limit in (("above", self.above), ("below", self.below)) if limit is not None}
+        _check_numbers(self.what, default=self.default, **limits)
+        above, below = limits.get("above", -math.inf), limits.get("below", math.inf)
+        if not above < self.default < below:
+            raise FamilyError(
+                f"`default` of `{self.name}` is {self.default!r}; it must be above {above} and below {below}"
+            )
 
     @property
     def name(self) -> str:
@@ -49,6 +65,11 @@ class Sought:
     unknown: Named
     start: float = 0.0
     scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        _check_numbers(self.unknown, start=self.start, scale=self.scale)
+        if self.scale <= 0:
+            raise FamilyError(f"`scale` of `{self.name}` is {self.scale!r}; it must be positive")
 
     @property
     def name(self) -> str:
@@ -67,6 +88,9 @@ class Equation:
     row: Named
     weight: float = 1.0
     like: tuple[Named, Named] | None = None
+
+    def __post_init__(self) -> None:
+        _check_numbers(self.row, weight=self.weight)
 
     @property
     def name(self) -> str:

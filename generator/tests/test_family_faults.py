@@ -51,6 +51,12 @@ def after(line: str, *more: str) -> str:
 CASES = [
     # what is replaced, by what, the line at fault begins with, part of the message, part of the help
     # the file itself
+    (OUTPUTS, "model.outputs(energy, energy)", "model.outputs", "`energy` is used twice", None),
+    (ENERGY, after(ENERGY, "__import__('math').sin(x)"), "__import__", "a number is needed where `x.position`", None),
+    (ENERGY, after(ENERGY, "model.define('far', x / 0, 'E', 'm', 'far')"), "model.define", "is not finite", None),
+    (ENERGY, after(ENERGY, "Given(position, 1.0, 3.0, 0.5)"), "Given", "`default` of `position` is 1.0", None),
+    (TRIM, 'sought=[Sought(position, float("nan")), Sought(rate)]', "model.trim", "`start` of `position` is nan", None),
+    (TRIM, "sought=[Sought(position, 0.0, -1.0), Sought(rate)]", "model.trim", "`scale` of `position` is -1.0", None),
     (OMEGA, "1 / 0\n" + OMEGA, "1 / 0", "ZeroDivisionError: division by zero", None),
     (ENERGY, after(ENERGY, "raise ValueError('no such vehicle')"), "raise", "ValueError: no such vehicle", None),
     (OMEGA, "raise SystemExit(3)\n" + OMEGA, "raise", "SystemExit: 3", None),

@@ -428,3 +428,12 @@ def test_a_model_that_asks_for_slopes_in_a_driven_input_is_refused(tmp_path: Pat
     with pytest.raises(TableError) as caught:
         load(path).model("gusty_sdcom")
     assert "`delta_e` is driven by a part" in caught.value.diagnostics[0].message
+
+
+def test_a_gust_that_no_curve_fit_sees_is_refused(tmp_path: Path) -> None:
+    old = 'gust = { part = "band_limited_gust", state = "alpha" }'
+    path = tmp_path / "dcom.toml"
+    path.write_text(TABLE.replace(old, old.replace("alpha", "gamma")), encoding="utf-8")
+    with pytest.raises(TableError) as caught:
+        load(path).model("gusty_sdcom")
+    assert "no curve fit of `gusty_sdcom` sees `gamma`" in caught.value.diagnostics[0].message

@@ -884,7 +884,8 @@ double ahv_powr(double x, double exponent) {
     const double high = exponent * of_base.high;
     const Pair product = exact_product(exponent, of_base.high);
     const double low = product.low + (exponent * of_base.low);
-    return exp_of_sum(high, (magnitude(high) < LARGEST_POWER) ? low : 0.0);
+    /* Beyond an exponent of 10^300 only the logarithm 0 gives a moderate product, and the low parts are no numbers. */
+    return exp_of_sum(high, ((magnitude(high) < LARGEST_POWER) && (magnitude(exponent) < 1e300)) ? low : 0.0);
 }
 
 double ahv_abs(double x) {

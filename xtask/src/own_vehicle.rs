@@ -46,6 +46,11 @@ const RUN: &str = "cargo run --release -- ";
 /// Makes the packages, builds their programs and runs them.
 pub(crate) fn run() -> Result<(), String> {
     let place = shell::root().join(PLACE);
+    // What an earlier run made of tables that are gone is no model of this one.
+    let made = place.join("made");
+    if made.exists() {
+        fs::remove_dir_all(&made).map_err(problem("remove", &made))?;
+    }
     for (package, folder) in PACKAGES {
         copied(&place, package, &shell::root().join(folder))?;
     }
@@ -84,7 +89,7 @@ pub(crate) fn run() -> Result<(), String> {
         ),
     ] {
         println!("{program}");
-        let own = Own::new(program, &place.join("made"));
+        let own = Own::new(program, &made);
         own.knows(models)?;
         own.answers(questions)?;
     }

@@ -58,7 +58,37 @@ impl Values {
         if system.is_some_and(|system| system != document.units.system) {
             found.convert(document)?;
         }
+        found.check(table, document)?;
         Ok(found)
+    }
+
+    /// A finite number of a table may be none in other units.
+    fn check(&self, table: &Table, document: &Document) -> Result<(), EmitError> {
+        let parameters = document.parameters.iter().zip(&self.nominal);
+        let own = parameters.map(|(it, value)| (format!("{}.{}", it.path.0, it.path.1), *value));
+        let sets = document
+            .sets
+            .iter()
+            .zip(&self.sets)
+            .flat_map(|(set, values)| {
+                let values = values.iter();
+                values.map(|(name, value)| (format!("{name} of set {}", set.name), *value))
+            });
+        let ends = document.validity.iter().zip(&self.bounds);
+        let ends = ends.flat_map(|(it, (min, max))| {
+            [min, max].map(|end| (format!("validity.{}", it.name), *end))
+        });
+        match own
+            .chain(sets)
+            .chain(ends)
+            .find(|(_, value)| !value.is_finite())
+        {
+            Some((place, _)) => Err(EmitError::Mismatch(format!(
+                "{}: `{place}` is beyond the numbers of f64 in the units of the package [not-finite]",
+                table.file_name
+            ))),
+            None => Ok(()),
+        }
     }
 
     /// Keeps how the number of an entry in degrees is computed.

@@ -97,7 +97,8 @@ pub(crate) fn powr(x: f64, y: f64) -> f64 {
     let logarithm = logarithm(x);
     let high = y * logarithm.high;
     let product = Pair::product(y, logarithm.high);
-    let is_moderate = high.abs() < LARGEST_EXPONENT;
+    // Beyond an exponent of 10³⁰⁰ only the logarithm 0 gives a moderate product, and the low parts are no numbers.
+    let is_moderate = (high.abs() < LARGEST_EXPONENT) & (y.abs() < 1e300);
     let low = product.low + y * logarithm.low;
     exp_of_sum(high, if is_moderate { low } else { 0.0 })
 }
