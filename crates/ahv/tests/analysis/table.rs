@@ -249,11 +249,11 @@ fn faults_are_reported_with_place_and_rule() {
         ),
         (
             "com.toml",
-            "4.6773, unit = \"1/rad\"",
-            "0.0816, unit = \"1/deg\"",
+            "S = { value = 17.0, unit = \"ft\"",
+            "S = { value = 5.18, unit = \"m\"",
             &[
-                "`1/deg` measures the right thing, but the table is in ft-slug-s-rad",
-                "write the value in `1/rad` [unit]",
+                "`m` measures the right thing, but the table is in ft-slug-s-rad",
+                "write the value in `ft` [unit]",
             ],
         ),
         (
