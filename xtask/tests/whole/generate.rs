@@ -420,10 +420,6 @@ fn xtask_builds_and_mends_when_generated_does_not() {
         "templates",
         "xtask",
     ]);
-    // They are the package's, but nobody generates them.
-    for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
-        fs::remove_file(scratch.path(&format!("generated/{licence}"))).expect("removed");
-    }
     let before = scratch.snapshot();
     // The program is that of the same sources: what could keep cargo from building it is a workspace that does not load.
     let mends = |damage: &str| {

@@ -58,7 +58,8 @@ fn a_changed_value_changes_one_line() {
         "{text}"
     );
     assert!(
-        text.contains(" more lines\ncode: 1 file, +1 −1\nIR and manifest: 1 file, +8 −8\n"),
+        text.contains(" more lines\n")
+            && text.contains("\ncode: 1 file, +1 −1\nIR and manifest: 1 file, +8 −8\n"),
         "{text}"
     );
     let text = scratch.generate(&[]).expect("generated").text();
