@@ -894,10 +894,11 @@ double ahv_abs(double x) {
 
 double ahv_select(double x, double bound, double below, double otherwise) {
     double chosen = not_a_number();
+    if (x >= bound) {
+        chosen = otherwise;
+    }
     if (x < bound) {
         chosen = below;
-    } else if (x >= bound) {
-        chosen = otherwise;
     }
     return chosen;
 }
