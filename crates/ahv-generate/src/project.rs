@@ -61,11 +61,14 @@ impl Project {
         self.command.as_deref().unwrap_or(usual)
     }
 
-    /// A path as messages and JSON name it: from the project's root, with `/`.
+    /// A path as messages and JSON name it: from the project's root, which is `.`, with `/`.
     #[must_use]
     pub fn shown(&self, path: &Path) -> String {
         // A name may hold characters that act on a terminal.
-        let text = slashed(path.strip_prefix(&self.root).unwrap_or(path));
+        let text = match slashed(path.strip_prefix(&self.root).unwrap_or(path)) {
+            root if root.is_empty() => ".".to_owned(),
+            other => other,
+        };
         let shown = |letter: char| {
             if letter.is_control() {
                 letter.escape_default().to_string()
