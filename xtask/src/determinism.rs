@@ -3,7 +3,6 @@
 use std::thread;
 
 use crate::shell;
-use crate::steps::FEATURES;
 
 /// How the program that prints the digests is built.
 struct Build {
@@ -36,7 +35,7 @@ const BUILDS: [Build; 4] = [
         name: "opt-level 1 with the features of the workspace",
         target: None,
         profile: "dev",
-        packages: &["--workspace", FEATURES[0], FEATURES[1]],
+        packages: &["--workspace", shell::FEATURES[0], shell::FEATURES[1]],
         variables: &[],
     },
     Build {

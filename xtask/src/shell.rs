@@ -18,6 +18,12 @@ pub(crate) fn target() -> PathBuf {
 /// The workspace of the benchmark.
 pub(crate) const BENCH: &str = "bench/Cargo.toml";
 
+/// All features but one: a writer of Parquet takes long to build.
+pub(crate) const FEATURES: [&str; 2] = [
+    "--features",
+    "ahv-core/std,ahv-integrate/rand,ahv-models/nalgebra",
+];
+
 /// The cargo that runs this program, at the repository's root.
 pub(crate) fn cargo() -> Command {
     program(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))

@@ -46,7 +46,7 @@ const STEPS: [Step; 25] = [
     ("clippy", || {
         cargo(
             &["clippy", "--workspace", "--all-targets"],
-            &FEATURES,
+            &shell::FEATURES,
             &DENY,
         )
     }),
@@ -75,7 +75,7 @@ const STEPS: [Step; 25] = [
     }),
     ("generate --check", generate_check),
     ("cargo test", || {
-        cargo(&["test", "--workspace"], &FEATURES, &[])
+        cargo(&["test", "--workspace"], &shell::FEATURES, &[])
     }),
     ("audit", accuracy),
     ("determinism", || {
@@ -122,11 +122,6 @@ const MORE: [Step; 5] = [
     ("audit in full", || {
         audit::run(audit::POINTS, audit::SEEDS).map(|()| Outcome::Passed)
     }),
-];
-/// All features but one: a writer of Parquet takes long to build.
-pub(crate) const FEATURES: [&str; 2] = [
-    "--features",
-    "ahv-core/std,ahv-integrate/rand,ahv-models/nalgebra",
 ];
 const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
@@ -203,7 +198,11 @@ fn generate_check() -> Result<Outcome, String> {
 /// The audit of accuracy with as few points as a gate can wait for, by the program that `cargo test` has built. What the oracle
 /// says of them stays in the cache until oracle or table change; what is generated is always compared with it.
 fn accuracy() -> Result<Outcome, String> {
-    cargo(&["build", "--workspace", "--bin", "audit"], &FEATURES, &[])?;
+    cargo(
+        &["build", "--workspace", "--bin", "audit"],
+        &shell::FEATURES,
+        &[],
+    )?;
     let mut audit = shell::program(shell::target().join("debug/audit"));
     audit.args(["--points", "100", "--root"]).arg(shell::root());
     if let Some(cache) = python::cache()? {
