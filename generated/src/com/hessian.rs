@@ -44,7 +44,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
         * p.inv_effective_inertia; // rad/ft^2
     hessian.eta_dot_1.velocity.velocity = -p.psi_1 * hessian.pitch_rate.velocity.velocity; // slug^0.5/ft^1.5
     hessian.eta_dot_2.velocity.velocity = -p.psi_2 * hessian.pitch_rate.velocity.velocity; // slug^0.5/ft^1.5
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -97,7 +96,6 @@ fn hessian_by_altitude<R: Real>(
     hessian.eta_dot_1.altitude.altitude = -p.psi_1 * hessian.pitch_rate.altitude.altitude; // slug^0.5/ft^1.5/s^2
     hessian.eta_dot_2.altitude.velocity = -p.psi_2 * hessian.pitch_rate.altitude.velocity; // slug^0.5/ft^1.5/s
     hessian.eta_dot_2.altitude.altitude = -p.psi_2 * hessian.pitch_rate.altitude.altitude; // slug^0.5/ft^1.5/s^2
-
     hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
     hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
@@ -112,7 +110,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
     hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
     hessian.altitude.gamma.velocity = i.cos_gamma;
     hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
     hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
@@ -167,7 +164,6 @@ fn hessian_by_alpha<R: Real>(
     hessian.eta_dot_2.alpha.altitude = -p.psi_2 * hessian.pitch_rate.alpha.altitude; // slug^0.5/ft^0.5/s^2/rad
     hessian.eta_dot_2.alpha.alpha = R::TWO * p.n_2_alpha_2
         - p.psi_2 * hessian.pitch_rate.alpha.alpha; // (ft*slug)^0.5/s^2/rad^2
-
     hessian.alpha.alpha.velocity = -hessian.gamma.alpha.velocity;
     hessian.alpha.alpha.altitude = -hessian.gamma.alpha.altitude;
     hessian.alpha.alpha.alpha = -hessian.gamma.alpha.alpha;

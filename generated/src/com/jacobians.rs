@@ -48,7 +48,6 @@ fn jacobians_by_velocity<R: Real>(
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_effective_inertia; // rad/s/ft
     state.eta_dot_1.velocity = -p.psi_1 * state.pitch_rate.velocity; // slug^0.5/ft^0.5/s
     state.eta_dot_2.velocity = -p.psi_2 * state.pitch_rate.velocity; // slug^0.5/ft^0.5/s
-
     state.altitude.velocity = i.sin_gamma;
     state.alpha.velocity = -state.gamma.velocity;
 }
@@ -66,7 +65,6 @@ fn jacobians_by_altitude<R: Real>(
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_effective_inertia; // rad/s^2/ft
     state.eta_dot_1.altitude = -p.psi_1 * state.pitch_rate.altitude; // slug^0.5/ft^0.5/s^2
     state.eta_dot_2.altitude = -p.psi_2 * state.pitch_rate.altitude; // slug^0.5/ft^0.5/s^2
-
     state.alpha.altitude = -state.gamma.altitude;
 }
 
@@ -75,7 +73,6 @@ fn jacobians_by_altitude<R: Real>(
 fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
-
     state.altitude.gamma = s.d_altitude_rate_d_gamma;
     state.alpha.gamma = -state.gamma.gamma;
 }
@@ -101,7 +98,6 @@ fn jacobians_by_alpha<R: Real>(
             - p.psi_2 * d_generalized_force_2_d_alpha); // 1/s^2
     state.eta_dot_1.alpha = d_generalized_force_1_d_alpha - p.psi_1 * state.pitch_rate.alpha; // (ft*slug)^0.5/s^2/rad
     state.eta_dot_2.alpha = d_generalized_force_2_d_alpha - p.psi_2 * state.pitch_rate.alpha; // (ft*slug)^0.5/s^2/rad
-
     state.alpha.alpha = -state.gamma.alpha;
 }
 
@@ -143,7 +139,6 @@ fn jacobians_by_phi<R: Real>(
     input.pitch_rate.phi = p.z_t_over_effective_inertia * i.thrust_phi; // rad/s^2
     input.eta_dot_1.phi = -p.psi_1 * input.pitch_rate.phi; // (ft*slug)^0.5/s^2
     input.eta_dot_2.phi = -p.psi_2 * input.pitch_rate.phi; // (ft*slug)^0.5/s^2
-
     input.velocity.phi = s.d_velocity_rate_d_phi;
     input.gamma.phi = s.d_force_turn_d_phi;
     input.alpha.phi = -s.d_force_turn_d_phi;
@@ -160,7 +155,6 @@ fn jacobians_by_delta_e<R: Real>(
         * (d_pitching_moment_d_delta_e - p.psi_2_n_2_delta_e); // 1/s^2
     input.eta_dot_1.delta_e = -p.psi_1 * input.pitch_rate.delta_e; // (ft*slug)^0.5/s^2/rad
     input.eta_dot_2.delta_e = p.n_2_delta_e - p.psi_2 * input.pitch_rate.delta_e; // (ft*slug)^0.5/s^2/rad
-
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.gamma.delta_e = i.turn_factor * p.c_l_delta_e;
 }

@@ -48,7 +48,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_effective_inertia; // rad/s^2/slug/ft
     parameter.eta_dot_1.i_yy = -p.psi_1 * parameter.pitch_rate.i_yy; // 1/ft^0.5/slug^0.5/s^2
     parameter.eta_dot_2.i_yy = -p.psi_2 * parameter.pitch_rate.i_yy; // 1/ft^0.5/slug^0.5/s^2
-
     parameter.velocity.m = -i.path_force * p.inv_m_2;
     parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
     parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
@@ -102,7 +101,6 @@ fn parameter_jacobian_by_environment<R: Real>(
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-
     parameter.velocity.rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2 * i.density_ratio;
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
@@ -133,7 +131,6 @@ fn parameter_jacobian_by_choices<R: Real>(
                 - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
         * slope_of_radius_ratio_in_earth_curvature;
     parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
@@ -246,7 +243,6 @@ fn parameter_jacobian_by_modes<R: Real>(
         * (i.pitch_acceleration * p.two_psi_2 - i.modal_load_2); // rad/s^2/ft^0.5/slug^0.5
     parameter.eta_dot_1.psi_2 = -p.psi_1 * parameter.pitch_rate.psi_2; // 1/s^2
     parameter.eta_dot_2.psi_2 = -(i.pitch_acceleration + p.psi_2 * parameter.pitch_rate.psi_2); // 1/s^2
-
     parameter.pitch_rate.zeta_1 = p.two_psi_1_omega_1_over_effective_inertia * x.eta_dot_1;
     parameter.pitch_rate.zeta_2 = p.two_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
     parameter.eta_dot_1.zeta_2 = p.minus_two_psi_1_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
@@ -284,7 +280,6 @@ fn parameter_jacobian_by_n<R: Real>(
     parameter.eta_dot_2.n_2_delta_e = u.delta_e + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
     parameter.eta_dot_1.n_2_alpha_2 = p.psi_1_psi_2_over_effective_inertia * i.alpha_2;
     parameter.eta_dot_1.n_2_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
-
     parameter.pitch_rate.n_1_alpha_2 = -p.psi_1_over_effective_inertia * i.alpha_2;
     parameter.pitch_rate.n_1_alpha = -p.psi_1_over_effective_inertia * x.alpha;
     parameter.pitch_rate.n_1_0 = p.minus_psi_1_over_effective_inertia;

@@ -39,7 +39,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
         - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
     let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
     hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -86,7 +85,6 @@ fn hessian_by_altitude<R: Real>(
     let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
     hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
-
     hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
     hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
@@ -101,7 +99,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
     hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
     hessian.altitude.gamma.velocity = i.cos_gamma;
     hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
     hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
@@ -144,7 +141,6 @@ fn hessian_by_alpha<R: Real>(
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + i.reference_force * p.two_c_bar_c_m_alpha_2; // lb/rad^2
     hessian.pitch_rate.alpha.alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
-
     hessian.alpha.alpha.velocity = -hessian.gamma.alpha.velocity;
     hessian.alpha.alpha.altitude = -hessian.gamma.alpha.altitude;
     hessian.alpha.alpha.alpha = -hessian.gamma.alpha.alpha;

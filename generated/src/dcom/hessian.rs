@@ -51,7 +51,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
     hessian.eta_dot_1.velocity.velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     hessian.eta_dot_2.velocity.velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
     hessian.eta_dot_3.velocity.velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -112,7 +111,6 @@ fn hessian_by_altitude<R: Real>(
     hessian.eta_dot_2.altitude.altitude = i.c_n_2 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     hessian.eta_dot_3.altitude.velocity = i.c_n_3 * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     hessian.eta_dot_3.altitude.altitude = i.c_n_3 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
     hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
     hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
@@ -183,7 +181,6 @@ fn hessian_by_eta_1<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
     let d2_pitching_moment_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_altitude_d_eta_1; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.eta_1.altitude = d2_pitching_moment_d_altitude_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.alpha.eta_1.velocity = -hessian.gamma.eta_1.velocity;
     hessian.alpha.eta_1.altitude = -hessian.gamma.eta_1.altitude;
     hessian.alpha.eta_1.alpha = -hessian.gamma.eta_1.alpha;
@@ -214,7 +211,6 @@ fn hessian_by_eta_2<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
     let d2_pitching_moment_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
         + p.z_t * d2_thrust_d_altitude_d_eta_2; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.eta_2.altitude = d2_pitching_moment_d_altitude_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.alpha.eta_2.velocity = -hessian.gamma.eta_2.velocity;
     hessian.alpha.eta_2.altitude = -hessian.gamma.eta_2.altitude;
     hessian.alpha.eta_2.alpha = -hessian.gamma.eta_2.alpha;
@@ -245,7 +241,6 @@ fn hessian_by_eta_3<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
     let d2_pitching_moment_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_altitude_d_eta_3; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.eta_3.altitude = d2_pitching_moment_d_altitude_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.alpha.eta_3.velocity = -hessian.gamma.eta_3.velocity;
     hessian.alpha.eta_3.altitude = -hessian.gamma.eta_3.altitude;
     hessian.alpha.eta_3.alpha = -hessian.gamma.eta_3.alpha;

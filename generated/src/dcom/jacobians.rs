@@ -53,7 +53,6 @@ fn jacobians_by_velocity<R: Real>(
     state.eta_dot_1.velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     state.eta_dot_2.velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     state.eta_dot_3.velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-
     state.altitude.velocity = i.sin_gamma;
     state.alpha.velocity = -state.gamma.velocity;
 }
@@ -75,7 +74,6 @@ fn jacobians_by_altitude<R: Real>(
     state.eta_dot_1.altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     state.eta_dot_2.altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     state.eta_dot_3.altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
-
     state.alpha.altitude = -state.gamma.altitude;
 }
 
@@ -159,7 +157,6 @@ fn jacobians_by_phi<R: Real>(
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
-
     input.velocity.phi = s.d_velocity_rate_d_phi;
     input.gamma.phi = s.d_force_turn_d_phi;
     input.alpha.phi = -s.d_force_turn_d_phi;
@@ -175,7 +172,6 @@ fn jacobians_by_delta_e<R: Real>(
     input.eta_dot_1.delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     input.eta_dot_2.delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     input.eta_dot_3.delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.gamma.delta_e = s.d_force_turn_d_delta_e;
     input.alpha.delta_e = -s.d_force_turn_d_delta_e;
@@ -191,7 +187,6 @@ fn jacobians_by_delta_c<R: Real>(
     input.eta_dot_1.delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     input.eta_dot_2.delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     input.eta_dot_3.delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-
     input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
     input.gamma.delta_c = s.d_force_turn_d_delta_c;
     input.alpha.delta_c = -s.d_force_turn_d_delta_c;

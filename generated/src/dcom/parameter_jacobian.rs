@@ -57,7 +57,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     parameter.velocity.s = d_path_force_d_s * p.inv_m; // 1/s^2
     let d_pitching_moment_d_s = i.dynamic_pressure * (p.c_bar * i.c_m + p.z_t * i.c_t); // lb/ft
     parameter.pitch_rate.s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
-
     parameter.velocity.m = -i.path_force * p.inv_m_2;
     parameter.gamma.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2;
     parameter.gamma.s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.half_over_m;
@@ -121,7 +120,6 @@ fn parameter_jacobian_by_environment<R: Real>(
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
         * slope_of_radius_ratio_in_earth_curvature;
@@ -150,7 +148,6 @@ fn parameter_jacobian_by_choices<R: Real>(
                 - x.velocity)
             - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-
     parameter.velocity.canard_command = -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m;
     parameter.velocity.canard_slaving = i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.c_l_delta_e_over_c_l_delta_c_m;
@@ -231,7 +228,6 @@ fn parameter_jacobian_by_c_l<R: Real>(
 ) {
     let d_c_l_d_c_l_delta_e = u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     parameter.gamma.c_l_delta_e = i.turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
-
     parameter.velocity.c_l_delta_e = i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.canard_slaving_over_c_l_delta_c_m;
     parameter.velocity.c_l_delta_c = -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
@@ -302,7 +298,6 @@ fn parameter_jacobian_by_modes<R: Real>(parameter: &mut ParameterJacobianEntries
     parameter.eta_dot_1.omega_1 = -(x.eta_dot_1 * p.two_zeta_1 + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
     parameter.eta_dot_2.omega_2 = -(x.eta_dot_2 * p.two_zeta_2 + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
     parameter.eta_dot_3.omega_3 = -(x.eta_dot_3 * p.two_zeta_3 + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
-
     parameter.eta_dot_1.zeta_1 = x.eta_dot_1 * p.minus_two_omega_1;
     parameter.eta_dot_2.zeta_2 = x.eta_dot_2 * p.minus_two_omega_2;
     parameter.eta_dot_3.zeta_3 = x.eta_dot_3 * p.minus_two_omega_3;
@@ -317,7 +312,6 @@ fn parameter_jacobian_by_c_n<R: Real>(
     parameter.eta_dot_1.c_n_1_alpha = i.reference_force * x.alpha;
     parameter.eta_dot_1.c_n_1_delta_e = i.reference_force * u.delta_e;
     parameter.eta_dot_1.c_n_1_delta_c = i.reference_force * i.canard_deflection;
-
     parameter.eta_dot_1.c_n_1_0 = i.reference_force;
     parameter.eta_dot_2.c_n_2_alpha_2 = parameter.eta_dot_1.c_n_1_alpha_2;
     parameter.eta_dot_2.c_n_2_alpha = parameter.eta_dot_1.c_n_1_alpha;

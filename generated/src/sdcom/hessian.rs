@@ -79,7 +79,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
             + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
     hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -128,7 +127,6 @@ fn hessian_by_altitude<R: Real>(
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
         + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
     hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
-
     hessian.gamma.altitude.velocity = h.d2_gamma_rate_d_velocity_d_altitude;
     hessian.gamma.altitude.altitude = h.d2_gamma_rate_d_altitude_d_altitude;
     hessian.alpha.altitude.velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
@@ -190,7 +188,6 @@ fn hessian_by_chi_1<R: Real>(
     let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_1.altitude = d2_pitching_moment_d_altitude_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.velocity.chi_1.alpha = h.d2_velocity_rate_d_alpha_d_chi_1;
     hessian.gamma.chi_1.alpha = h.d2_force_turn_d_alpha_d_chi_1;
     hessian.alpha.chi_1.velocity = -hessian.gamma.chi_1.velocity;
@@ -221,7 +218,6 @@ fn hessian_by_chi_2<R: Real>(
     let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
         + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.velocity.chi_2.alpha = h.d2_velocity_rate_d_alpha_d_chi_2;
     hessian.gamma.chi_2.alpha = h.d2_force_turn_d_alpha_d_chi_2;
     hessian.alpha.chi_2.velocity = -hessian.gamma.chi_2.velocity;
@@ -252,7 +248,6 @@ fn hessian_by_chi_3<R: Real>(
     let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.altitude = d2_pitching_moment_d_altitude_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.velocity.chi_3.alpha = h.d2_velocity_rate_d_alpha_d_chi_3;
     hessian.gamma.chi_3.alpha = h.d2_force_turn_d_alpha_d_chi_3;
     hessian.alpha.chi_3.velocity = -hessian.gamma.chi_3.velocity;

@@ -80,7 +80,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
             + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
     hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -129,7 +128,6 @@ fn hessian_by_altitude<R: Real>(
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
         + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
     hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
-
     hessian.gamma.altitude.velocity = h.d2_gamma_rate_d_velocity_d_altitude;
     hessian.gamma.altitude.altitude = h.d2_gamma_rate_d_altitude_d_altitude;
     hessian.alpha.altitude.velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
@@ -146,7 +144,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
     hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
     hessian.altitude.gamma.velocity = i.cos_gamma;
     hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
     hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
@@ -172,7 +169,6 @@ fn hessian_by_alpha<R: Real>(
         + h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     hessian.velocity.alpha.alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
-
     hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
     hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
     hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
@@ -209,7 +205,6 @@ fn hessian_by_chi_1<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
     let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_1.altitude = d2_pitching_moment_d_altitude_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.alpha.chi_1.velocity = -hessian.gamma.chi_1.velocity;
     hessian.alpha.chi_1.altitude = -hessian.gamma.chi_1.altitude;
     hessian.alpha.chi_1.alpha = -hessian.gamma.chi_1.alpha;
@@ -240,7 +235,6 @@ fn hessian_by_chi_2<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
     let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
         + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.alpha.chi_2.velocity = -hessian.gamma.chi_2.velocity;
     hessian.alpha.chi_2.altitude = -hessian.gamma.chi_2.altitude;
     hessian.alpha.chi_2.alpha = -hessian.gamma.chi_2.alpha;
@@ -271,7 +265,6 @@ fn hessian_by_chi_3<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
     let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.altitude = d2_pitching_moment_d_altitude_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.alpha.chi_3.velocity = -hessian.gamma.chi_3.velocity;
     hessian.alpha.chi_3.altitude = -hessian.gamma.chi_3.altitude;
     hessian.alpha.chi_3.alpha = -hessian.gamma.chi_3.alpha;
@@ -293,7 +286,6 @@ fn hessian_by_alpha_gust<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<
     let d2_path_force_d_alpha_gust_d_alpha_gust = h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     hessian.velocity.alpha_gust.alpha_gust = d2_path_force_d_alpha_gust_d_alpha_gust * p.inv_m; // ft/s^2/rad^2
-
     hessian.gamma.alpha_gust.velocity = h.d2_force_turn_d_velocity_d_alpha_gust;
     hessian.gamma.alpha_gust.altitude = h.d2_force_turn_d_altitude_d_alpha_gust;
     hessian.gamma.alpha_gust.alpha = h.d2_force_turn_d_alpha_d_alpha_gust;

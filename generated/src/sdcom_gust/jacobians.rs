@@ -48,7 +48,6 @@ fn jacobians_by_velocity<R: Real>(
         * (i.c_m * s.d_reference_force_d_velocity + i.reference_force * s.d_c_m_d_velocity) + p.z_t
         * s.d_thrust_d_velocity; // lb*s/ft
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
-
     state.altitude.velocity = i.sin_gamma;
     state.alpha.velocity = -state.gamma.velocity;
 }
@@ -70,7 +69,6 @@ fn jacobians_by_altitude<R: Real>(
         * (i.c_m * s.d_reference_force_d_altitude + i.reference_force * s.d_c_m_d_altitude) + p.z_t
         * s.d_thrust_d_altitude; // lb/ft
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
-
     state.alpha.altitude = -state.gamma.altitude;
 }
 
@@ -79,7 +77,6 @@ fn jacobians_by_altitude<R: Real>(
 fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
-
     state.altitude.gamma = s.d_altitude_rate_d_gamma;
     state.alpha.gamma = -state.gamma.gamma;
 }
@@ -94,7 +91,6 @@ fn jacobians_by_alpha<R: Real>(
         - s.d_drag_d_alpha; // lb/ft/rad
     state.velocity.alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
     state.gamma.alpha = i.turn_factor * s.d_normal_coefficient_d_alpha; // 1/s
-
     state.alpha.alpha = -state.gamma.alpha;
     state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
 }
@@ -141,7 +137,6 @@ fn jacobians_by_alpha_gust<R: Real>(
     let d_path_force_d_alpha_gust = s.cos_alpha_times_d_thrust_d_alpha - s.d_drag_d_alpha; // lb/ft/rad
     state.velocity.alpha_gust = d_path_force_d_alpha_gust * p.inv_m; // ft/s^2/rad
     state.gamma.alpha_gust = i.turn_factor * s.d_normal_coefficient_d_alpha_gust; // 1/s
-
     state.alpha.alpha_gust = -state.gamma.alpha_gust;
     state.pitch_rate.alpha_gust = s.d_pitch_acceleration_d_alpha;
     state.alpha_gust.alpha_gust = p.minus_over_gust_time;
@@ -161,7 +156,6 @@ fn jacobians_by_phi<R: Real>(
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
-
     input.velocity.phi = s.d_velocity_rate_d_phi;
     input.gamma.phi = s.d_force_turn_d_phi;
     input.alpha.phi = -s.d_force_turn_d_phi;
@@ -189,7 +183,6 @@ fn jacobians_by_delta_e<R: Real>(
     let d_pitching_moment_d_delta_e = p.c_bar * i.reference_force * d_c_m_d_delta_e
         + p.z_t * d_thrust_d_delta_e; // lb/rad
     input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.gamma.delta_e = s.d_force_turn_d_delta_e;
     input.alpha.delta_e = -s.d_force_turn_d_delta_e;
@@ -217,7 +210,6 @@ fn jacobians_by_delta_c<R: Real>(
     let d_pitching_moment_d_delta_c = p.c_bar * i.reference_force * d_c_m_d_delta_c
         + p.z_t * d_thrust_d_delta_c; // lb/rad
     input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-
     input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
     input.gamma.delta_c = s.d_force_turn_d_delta_c;
     input.alpha.delta_c = -s.d_force_turn_d_delta_c;

@@ -76,7 +76,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     let d_pitching_moment_d_s = p.c_bar
         * (i.c_m * i.dynamic_pressure + i.reference_force * d_c_m_d_s) + p.z_t * d_thrust_d_s; // lb/ft
     parameter.pitch_rate.s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
-
     parameter.velocity.m = -i.path_force * p.inv_m_2;
     parameter.gamma.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2;
     parameter.alpha.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.half_inv_m_2;
@@ -133,7 +132,6 @@ fn parameter_jacobian_by_environment<R: Real>(
         * (i.c_m * q.d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s) + p.z_t
         * q.d_thrust_d_h_s; // lb/ft
     parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
-
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
@@ -190,7 +188,6 @@ fn parameter_jacobian_by_modes<R: Real>(
     parameter.chi_1.zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
     parameter.chi_2.zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
     parameter.chi_3.zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
-
     parameter.alpha.omega_1 = -parameter.gamma.omega_1;
     parameter.alpha.omega_2 = -parameter.gamma.omega_2;
     parameter.alpha.omega_3 = -parameter.gamma.omega_3;
@@ -267,7 +264,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter.chi_1.moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_2.moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_3.moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
-
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
     parameter.alpha.canard_command = -parameter.gamma.canard_command;
@@ -379,7 +375,6 @@ fn parameter_jacobian_by_c_l<R: Real>(
     let d_pitching_moment_d_c_l_delta_c = p.c_bar * i.reference_force * d_c_m_d_c_l_delta_c
         + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
     parameter.pitch_rate.c_l_delta_c = d_pitching_moment_d_c_l_delta_c * p.inv_i_yy; // rad^2/s^2
-
     parameter.gamma.c_l_alpha = i.turn_factor * i.incidence;
     parameter.gamma.c_l_0 = i.turn_factor;
     parameter.gamma.c_l_eta_1 = i.turn_factor * i.eta_1;
@@ -463,7 +458,6 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
     let d_pitching_moment_d_c_n_1_0 = p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2
         * q.reference_force_2; // lb*slug^0.5/ft^0.5
     parameter.pitch_rate.c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.alpha.c_n_1_alpha_2 = -parameter.gamma.c_n_1_alpha_2;
     parameter.alpha.c_n_1_alpha = -parameter.gamma.c_n_1_alpha;
     parameter.alpha.c_n_1_delta_e = -parameter.gamma.c_n_1_delta_e;
@@ -523,7 +517,6 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     let d_pitching_moment_d_c_n_2_0 = p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2
         * q.reference_force_2; // lb*slug^0.5/ft^0.5
     parameter.pitch_rate.c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.alpha.c_n_2_alpha_2 = -parameter.gamma.c_n_2_alpha_2;
     parameter.alpha.c_n_2_alpha = -parameter.gamma.c_n_2_alpha;
     parameter.alpha.c_n_2_delta_e = -parameter.gamma.c_n_2_delta_e;
@@ -583,7 +576,6 @@ fn parameter_jacobian_by_c_n_3<R: Real>(
     let d_pitching_moment_d_c_n_3_0 = p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2
         * q.reference_force_2; // lb*slug^0.5/ft^0.5
     parameter.pitch_rate.c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.alpha.c_n_3_alpha_2 = -parameter.gamma.c_n_3_alpha_2;
     parameter.alpha.c_n_3_alpha = -parameter.gamma.c_n_3_alpha;
     parameter.alpha.c_n_3_delta_e = -parameter.gamma.c_n_3_delta_e;

@@ -368,7 +368,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.alpha.gamma.velocity = s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
     hessian.alpha.gamma.altitude = s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     hessian.alpha.gamma.gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
     hessian.altitude.gamma.velocity = i.cos_gamma;
 }
 
@@ -645,7 +644,6 @@ fn hessian_by_chi_1<R: Real>(
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_1.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.gamma.chi_1.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_1;
     hessian.gamma.chi_1.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_1;
     hessian.gamma.chi_1.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_1;
@@ -676,7 +674,6 @@ fn hessian_by_chi_2<R: Real>(
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_2.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.gamma.chi_2.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_2;
     hessian.gamma.chi_2.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_2;
     hessian.gamma.chi_2.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_2;
@@ -707,7 +704,6 @@ fn hessian_by_chi_3<R: Real>(
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.gamma.chi_3.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_3;
     hessian.gamma.chi_3.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_3;
     hessian.gamma.chi_3.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_3;

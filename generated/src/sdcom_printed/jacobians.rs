@@ -97,7 +97,6 @@ fn jacobians_by_velocity<R: Real>(
         s.d_reference_force_d_velocity * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
-
     state.altitude.velocity = i.sin_gamma;
 }
 
@@ -177,7 +176,6 @@ fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermed
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
     state.alpha.gamma = i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
-
     state.altitude.gamma = s.d_altitude_rate_d_gamma;
 }
 
@@ -269,7 +267,6 @@ fn jacobians_by_phi<R: Real>(
     input.alpha.phi = -i.turn_factor * i.sin_alpha * s.c_t_phi_alpha_alpha_plus_table_c_t_phi; // rad/s
     input.pitch_rate.phi = i.reference_force * p.z_t_over_i_yy
         * s.c_t_phi_alpha_alpha_plus_table_c_t_phi; // rad/s^2
-
     input.velocity.phi = i.g_velocity;
     input.gamma.phi = s.d_gamma_rate_printed_d_phi;
 }
@@ -291,7 +288,6 @@ fn jacobians_by_delta_e<R: Real>(
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
     input.pitch_rate.delta_e = i.g_pitch_rate + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
-
     input.velocity.delta_e = s.d_f_velocity_d_delta_e;
     input.gamma.delta_e = s.d_f_gamma_eta_d_delta_e;
 }
@@ -312,7 +308,6 @@ fn jacobians_by_delta_c<R: Real>(
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
-
     input.velocity.delta_c = s.d_f_velocity_eta_d_delta_c;
     input.gamma.delta_c = s.d_f_gamma_eta_d_delta_c;
 }

@@ -214,7 +214,6 @@ fn parameter_jacobian_by_environment_of_velocity<R: Real>(
         q.d_reference_force_d_h_s * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_s
         + u.phi * d_g_velocity_d_h_s; // 1/s^2
-
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
@@ -267,7 +266,6 @@ fn parameter_jacobian_by_environment_of_gamma<R: Real>(
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
     parameter.gamma.r_e = -i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
-
     parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
 }
 
@@ -306,7 +304,6 @@ fn parameter_jacobian_by_environment_of_alpha<R: Real>(
     parameter.alpha.h_s = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_s
         + d_f_alpha_d_h_s; // rad/s/ft
     parameter.alpha.r_e = i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
-
     parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
 }
 
@@ -454,7 +451,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter.chi_1.moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_2.moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_3.moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
-
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
 }
@@ -486,7 +482,6 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.alpha.c_t_eta_3 = -parameter.gamma.c_t_eta_3; // rad*ft^0.5*slug^0.5/s
     parameter.pitch_rate.c_t_eta_3 = i.reference_force * p.z_t_over_i_yy
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
-
     parameter.velocity.c_t_phi_alpha = u.phi * i.reference_force * p.inv_m * i.cos_alpha * x.alpha;
     parameter.velocity.c_t_phi = u.phi * i.reference_force * p.inv_m * i.cos_alpha;
     parameter.velocity.c_t_alpha = i.reference_force * p.inv_m * i.cos_alpha * x.alpha;
@@ -548,7 +543,6 @@ fn parameter_jacobian_by_c_l<R: Real>(
     parameter.alpha.c_l_eta_2 = -parameter.gamma.c_l_eta_2; // rad*ft^0.5*slug^0.5/s
     parameter.gamma.c_l_eta_3 = i.turn_factor * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
     parameter.alpha.c_l_eta_3 = -parameter.gamma.c_l_eta_3; // rad*ft^0.5*slug^0.5/s
-
     parameter.gamma.c_l_alpha = x.alpha * i.turn_factor;
     parameter.gamma.c_l_0 = i.turn_factor;
     parameter.alpha.c_l_alpha = -x.alpha * i.turn_factor;
@@ -567,7 +561,6 @@ fn parameter_jacobian_by_c_d<R: Real>(
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
     parameter.velocity.c_d_eta_3 = -i.reference_force * p.inv_m
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
-
     parameter.velocity.c_d_alpha = -i.reference_force * p.inv_m * x.alpha;
     parameter.velocity.c_d_delta_e = -i.reference_force * p.inv_m * u.delta_e;
     parameter.velocity.c_d_delta_c = -i.reference_force * p.canard_gain_over_m * u.delta_e;
@@ -600,7 +593,6 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
         * i.reference_force; // (ft*slug)^0.5/s^2
     parameter.pitch_rate.c_n_1_0 = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
         * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.gamma.c_n_1_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
     parameter.gamma.c_n_1_alpha = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * x.alpha;
     parameter.gamma.c_n_1_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
@@ -641,7 +633,6 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
         * i.reference_force; // (ft*slug)^0.5/s^2
     parameter.pitch_rate.c_n_2_0 = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
         * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.gamma.c_n_2_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * i.alpha_2;
     parameter.gamma.c_n_2_alpha = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * x.alpha;
     parameter.gamma.c_n_2_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * u.delta_e;
@@ -682,7 +673,6 @@ fn parameter_jacobian_by_c_n_3<R: Real>(
         * i.reference_force; // (ft*slug)^0.5/s^2
     parameter.pitch_rate.c_n_3_0 = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
         * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.gamma.c_n_3_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * i.alpha_2;
     parameter.gamma.c_n_3_alpha = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * x.alpha;
     parameter.gamma.c_n_3_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * u.delta_e;
@@ -709,7 +699,6 @@ fn parameter_jacobian_by_c_m<R: Real>(
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
     parameter.pitch_rate.c_m_eta_3 = i.reference_force * p.c_bar_over_i_yy
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
-
     parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
     parameter.pitch_rate.c_m_delta_e = u.delta_e * i.reference_force * p.c_bar_over_i_yy;

@@ -7,6 +7,8 @@ use crate::ir::{self, Basis};
 
 /// A function of more lines is computed in pieces; what a piece takes besides its statements is above that.
 pub(super) const LONGEST: usize = 118;
+/// A function that is differentiated by so many things is computed in pieces even if it is short: it would not be for long.
+const MANY: usize = 6;
 /// A part of a stage is as near to this many lines as its length allows.
 const FULL: usize = 90;
 /// Characters of a line.
@@ -22,7 +24,8 @@ pub(crate) struct Group {
     pub(crate) entries: Vec<usize>,
 }
 
-/// The groups of a function of so many lines, in the order in which their first entries stand; none where it is short enough.
+/// The groups of a function of so many lines, in the order in which their first entries stand; none where it is short
+/// and by few variables.
 ///
 /// There is one for each component or group of parameters that entries are derivatives by, those with an index together. One that
 /// is too long is divided by the index, then by rows. Short neighbours are not joined: a term more would change which,
@@ -33,7 +36,7 @@ pub(super) fn groups(
     lines: usize,
     mut length: impl FnMut(&Group) -> usize,
 ) -> Vec<Group> {
-    if lines <= LONGEST || !function.compressed {
+    if !function.compressed {
         return Vec::new();
     }
     let outputs = function.outputs.iter();
@@ -51,8 +54,12 @@ pub(super) fn groups(
         }
     };
     let row = |position: &usize| entries[*position].1.at.first().cloned();
+    let families = divided((0..entries.len()).collect(), |it| stem(&by(it)));
+    if lines <= LONGEST && families.len() < MANY {
+        return Vec::new();
+    }
     let mut groups = Vec::new();
-    for family in divided((0..entries.len()).collect(), |it| stem(&by(it))) {
+    for family in families {
         if length(&family) <= LONGEST {
             groups.push(family);
             continue;

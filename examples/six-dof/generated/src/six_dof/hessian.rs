@@ -113,7 +113,6 @@ fn hessian_by_velocity<R: Real>(
     let cos_alpha_times_d2_a_x_d_velocity_d_velocity = i.cos_alpha * d2_a_x_d_velocity_d_velocity;
     let sin_alpha_times_d2_a_z_d_velocity_d_velocity = i.sin_alpha * d2_a_z_d_velocity_d_velocity;
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-
     hessian.velocity.velocity.velocity = i.cos_beta
         * (cos_alpha_times_d2_a_x_d_velocity_d_velocity + sin_alpha_times_d2_a_z_d_velocity_d_velocity) + i.sin_beta
         * d2_a_y_d_velocity_d_velocity;
@@ -197,7 +196,6 @@ fn hessian_by_alpha<R: Real>(
         - i.a_x
         + d2_a_x_d_alpha_d_alpha;
     let minus_d_a_z_d_velocity_minus_d2_a_x_d_velocity_d_alpha = -s.d_a_z_d_velocity - d2_a_x_d_velocity_d_alpha;
-
     hessian.velocity.alpha.velocity = i.cos_beta
         * (i.sin_alpha * minus_d_a_x_d_velocity_plus_d2_a_z_d_velocity_d_alpha
             + i.cos_alpha * (s.d_a_z_d_velocity + d2_a_x_d_velocity_d_alpha));
@@ -291,7 +289,6 @@ fn hessian_by_beta<R: Real>(
     let minus_d_a_z_d_beta_minus_d2_a_x_d_alpha_d_beta = -s.d_a_z_d_beta - d2_a_x_d_alpha_d_beta;
     let a_x_cos_alpha = i.a_x * i.cos_alpha;
     let inv_cos_beta_3 = i.inv_cos_beta * s.inv_cos_beta_2;
-
     hessian.velocity.beta.velocity = i.sin_beta * hessian_term_1 + i.cos_beta
         * (s.d_a_y_d_velocity + cos_alpha_times_d2_a_x_d_velocity_d_beta + sin_alpha_times_d2_a_z_d_velocity_d_beta);
     hessian.velocity.beta.alpha = i.cos_alpha * i.cos_beta * (s.d_a_z_d_beta + d2_a_x_d_alpha_d_beta)
@@ -455,7 +452,6 @@ fn hessian_by_q_0<R: Real>(
         - cos_alpha_times_d_a_z_d_q_0;
     let cos_alpha_times_d_a_x_d_q_0_plus_sin_alpha_times_d_a_z_d_q_0 = s.cos_alpha_times_d_a_x_d_q_0
         + s.sin_alpha_times_d_a_z_d_q_0;
-
     hessian.velocity.q_0.alpha = i.cos_beta * cos_alpha_times_d_a_z_d_q_0_minus_sin_alpha_times_d_a_x_d_q_0;
     hessian.velocity.q_0.beta = i.sin_beta * (-s.cos_alpha_times_d_a_x_d_q_0 - s.sin_alpha_times_d_a_z_d_q_0)
         + cos_beta_times_d_a_y_d_q_0;
@@ -577,7 +573,6 @@ fn hessian_by_q_1<R: Real>(
         * (x.velocity * i.cos_alpha * h.d2_downward_x_d_q_1_d_q_1
             + x.velocity * i.sin_alpha * h.d2_downward_z_d_q_1_d_q_1)
         + x.velocity * i.sin_beta * h.d2_downward_y_d_q_1_d_q_1); // m/s
-
     hessian.velocity.q_1.alpha = i.cos_beta * h.cos_alpha_times_d_a_z_d_q_1_minus_sin_alpha_times_d_a_x_d_q_1;
     hessian.velocity.q_1.beta = i.sin_beta * (-s.cos_alpha_times_d_a_x_d_q_1 - s.sin_alpha_times_d_a_z_d_q_1)
         + h.cos_beta_times_d_a_y_d_q_1;
@@ -782,7 +777,6 @@ fn hessian_by_q_2_of_north<R: Real>(
     let d2_to_north_z_d_q_2_d_q_2 = R::TWO * s.slope_of_to_north_z_in_norm_squared
         - R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_0
         + R::TWO * x.q_2 * d_slope_of_to_north_z_in_norm_squared_d_q_2;
-
     hessian.north.q_2.velocity = i.cos_beta * (i.cos_alpha * s.d_to_north_x_d_q_2 + i.sin_alpha * s.d_to_north_z_d_q_2)
         + i.sin_beta * s.d_to_north_y_d_q_2;
     hessian.north.q_2.alpha = i.cos_beta
@@ -835,7 +829,6 @@ fn hessian_by_q_2_of_east<R: Real>(
     let d2_to_east_z_d_q_2_d_q_2 = R::TWO * s.slope_of_to_east_z_in_norm_squared
         - R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_3
         + R::TWO * x.q_2 * d_slope_of_to_east_z_in_norm_squared_d_q_2;
-
     hessian.east.q_2.velocity = i.cos_beta * (i.cos_alpha * s.d_to_east_x_d_q_2 + i.sin_alpha * s.d_to_east_z_d_q_2)
         + i.sin_beta * s.d_to_east_y_d_q_2;
     hessian.east.q_2.alpha = i.cos_beta
@@ -1033,7 +1026,6 @@ fn hessian_by_q_3_of_north<R: Real>(
     let d2_to_north_z_d_q_3_d_q_3 = R::TWO * s.slope_of_to_north_z_in_norm_squared
         - R::from_f64(4.0) * h.q_1_inv_norm_squared_2_q_3
         + R::TWO * x.q_3 * d_slope_of_to_north_z_in_norm_squared_d_q_3;
-
     hessian.north.q_3.velocity = i.cos_beta * (i.cos_alpha * s.d_to_north_x_d_q_3 + i.sin_alpha * s.d_to_north_z_d_q_3)
         + i.sin_beta * s.d_to_north_y_d_q_3;
     hessian.north.q_3.alpha = i.cos_beta
@@ -1096,7 +1088,6 @@ fn hessian_by_q_3_of_east<R: Real>(
     let d2_to_east_z_d_q_3_d_q_3 = R::TWO * s.slope_of_to_east_z_in_norm_squared
         - R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_3
         + R::TWO * x.q_3 * d_slope_of_to_east_z_in_norm_squared_d_q_3;
-
     hessian.east.q_3.velocity = i.cos_beta * (i.cos_alpha * s.d_to_east_x_d_q_3 + i.sin_alpha * s.d_to_east_z_d_q_3)
         + i.sin_beta * s.d_to_east_y_d_q_3;
     hessian.east.q_3.alpha = i.cos_beta
@@ -1170,7 +1161,6 @@ fn hessian_by_altitude<R: Real>(
         * h.d2_normal_force_d_altitude_d_altitude; // N/m
     let sin_alpha_times_d_a_x_d_altitude = i.sin_alpha * s.d_a_x_d_altitude;
     let cos_alpha_times_d_a_z_d_altitude = i.cos_alpha * s.d_a_z_d_altitude;
-
     hessian.velocity.altitude.velocity = i.cos_beta
         * (h.cos_alpha_times_d2_a_x_d_velocity_d_altitude + h.sin_alpha_times_d2_a_z_d_velocity_d_altitude) + i.sin_beta
         * h.d2_a_y_d_velocity_d_altitude;
@@ -1267,7 +1257,6 @@ fn hessian_by_roll_rate<R: Real>(
             + i.reference_force * d2_c_r_d_velocity_d_roll_rate); // N*s^2/rad
     let d2_yawing_moment_d_velocity_d_roll_rate = p.b_2_c_n_p_hat
         * h.d2_yawing_moment_d_velocity_d_roll_rate_over_b_2_c_n_p_hat; // N*s^2/rad
-
     hessian.alpha.roll_rate.alpha = i.sin_alpha * i.sin_beta * i.inv_cos_beta;
     hessian.alpha.roll_rate.beta = -i.cos_alpha * h.one_plus_sin_beta_2_inv_cos_beta_2;
     hessian.beta.roll_rate.alpha = i.cos_alpha;
@@ -1291,7 +1280,6 @@ fn hessian_by_yaw_rate<R: Real>(
     let d2_yawing_moment_d_velocity_d_yaw_rate = p.b
         * (s.d_reference_force_d_velocity * s.d_c_n_d_yaw_rate
             + i.reference_force * d2_c_n_d_velocity_d_yaw_rate); // N*s^2/rad
-
     hessian.alpha.yaw_rate.alpha = -i.cos_alpha * i.sin_beta * i.inv_cos_beta;
     hessian.alpha.yaw_rate.beta = -i.sin_alpha * h.one_plus_sin_beta_2_inv_cos_beta_2;
     hessian.beta.yaw_rate.alpha = i.sin_alpha;
@@ -1317,7 +1305,6 @@ fn hessian_by_pitch_rate<R: Real>(
     let d2_pitching_moment_d_velocity_d_pitch_rate = p.c_bar
         * (s.d_reference_force_d_velocity * s.d_c_m_d_pitch_rate
             + i.reference_force * d2_c_m_d_velocity_d_pitch_rate); // N*s^2/rad
-
     hessian.roll_rate.pitch_rate.roll_rate = p.i_zz_plus_d2_yaw_torque_d_roll_rate_d_pitch_rate_times_i_xz_over_inertia;
     hessian.pitch_rate.pitch_rate.velocity = d2_pitching_moment_d_velocity_d_pitch_rate * p.inv_i_yy;
     hessian.yaw_rate.pitch_rate.roll_rate = p.i_xz_2_plus_i_xx_times_d2_yaw_torque_d_roll_rate_d_pitch_rate_inv_inertia;

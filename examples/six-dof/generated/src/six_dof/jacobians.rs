@@ -64,7 +64,6 @@ fn jacobians_by_velocity<R: Real>(
         * d_normal_force_d_velocity; // N*s
     state.altitude.velocity = -(i.cos_beta
         * h.downward_x_cos_alpha_plus_downward_z_sin_alpha + i.downward_y * i.sin_beta);
-
     state.velocity.velocity = i.cos_beta * (s.cos_alpha_times_d_a_x_d_velocity + s.sin_alpha_times_d_a_z_d_velocity)
         + i.sin_beta * s.d_a_y_d_velocity;
     state.alpha.velocity = i.inv_cos_beta
@@ -98,7 +97,6 @@ fn jacobians_by_alpha<R: Real>(
         - p.x_cg * d_normal_force_d_alpha; // N*m/rad
     state.altitude.alpha = -x.velocity * i.cos_beta
         * (h.downward_z_cos_alpha - h.downward_x_sin_alpha); // m/s/rad
-
     state.velocity.alpha = i.cos_beta
         * (i.sin_alpha * s.minus_a_x_plus_d_a_z_d_alpha + i.cos_alpha * s.a_z_plus_d_a_x_d_alpha);
     state.alpha.alpha = i.inv_cos_beta
@@ -132,7 +130,6 @@ fn jacobians_by_beta<R: Real>(
     let minus_a_x_cos_alpha_minus_a_z_sin_alpha_plus_d_a_y_d_beta = s.d_a_y_d_beta
         - i.a_x * i.cos_alpha
         - i.a_z * i.sin_alpha;
-
     state.velocity.beta = i.sin_beta * minus_a_x_cos_alpha_minus_a_z_sin_alpha_plus_d_a_y_d_beta
         + i.cos_beta * (i.a_y + s.cos_alpha_times_d_a_x_d_beta + s.sin_alpha_times_d_a_z_d_beta);
     state.alpha.beta = i.cos_alpha
@@ -262,7 +259,6 @@ fn jacobians_by_altitude<R: Real>(
         + p.x_cg * d_side_force_d_altitude; // N
     let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude
         - p.x_cg * d_normal_force_d_altitude; // N
-
     state.velocity.altitude = i.cos_beta * (s.cos_alpha_times_d_a_x_d_altitude + s.sin_alpha_times_d_a_z_d_altitude)
         + i.sin_beta * s.d_a_y_d_altitude;
     state.alpha.altitude = i.inv_velocity * i.inv_cos_beta
@@ -288,7 +284,6 @@ fn jacobians_by_roll_rate<R: Real>(
     let d_yawing_moment_d_roll_rate = i.reference_force * p.half_b_2_c_n_p_hat * i.inv_velocity; // N*m*s/rad
     let d_yaw_torque_d_roll_rate = x.pitch_rate * p.d2_yaw_torque_d_roll_rate_d_pitch_rate
         + d_yawing_moment_d_roll_rate; // N*m*s/rad
-
     state.alpha.roll_rate = -i.cos_alpha * i.sin_beta * i.inv_cos_beta;
     state.beta.roll_rate = i.sin_alpha;
     state.roll_rate.roll_rate = p.inv_inertia
@@ -311,7 +306,6 @@ fn jacobians_by_pitch_rate<R: Real>(
     let d_yaw_torque_d_pitch_rate = p.d2_yaw_torque_d_roll_rate_d_pitch_rate * x.roll_rate
         - x.yaw_rate * p.i_xz; // N*m*s/rad
     let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar * s.d_c_m_d_pitch_rate; // N*m*s/rad
-
     state.alpha.pitch_rate = R::ONE;
     state.roll_rate.pitch_rate = p.inv_inertia
         * (p.i_zz * d_roll_torque_d_pitch_rate + p.i_xz * d_yaw_torque_d_pitch_rate);
@@ -334,7 +328,6 @@ fn jacobians_by_yaw_rate<R: Real>(
         + d_rolling_moment_d_yaw_rate; // N*m*s/rad
     let d_yawing_moment_d_yaw_rate = i.reference_force * p.b * s.d_c_n_d_yaw_rate; // N*m*s/rad
     let d_yaw_torque_d_yaw_rate = d_yawing_moment_d_yaw_rate - s.i_xz_pitch_rate; // N*m*s/rad
-
     state.alpha.yaw_rate = -i.sin_alpha * i.sin_beta * i.inv_cos_beta;
     state.beta.yaw_rate = -i.cos_alpha;
     state.roll_rate.yaw_rate = p.inv_inertia * (p.i_zz * d_roll_torque_d_yaw_rate + p.i_xz * d_yaw_torque_d_yaw_rate);
@@ -364,7 +357,6 @@ fn jacobians_by_throttle<R: Real>(input: &mut InputJacobianEntries<R>, p: &Prepa
     let d_c_t_d_throttle = p.c_t_throttle + i.mach * p.c_t_throttle_mach + i.mach_2 * p.c_t_throttle_mach_2;
     let d_thrust_d_throttle = i.reference_force * d_c_t_d_throttle; // N
     let d_a_x_d_throttle = d_thrust_d_throttle * p.inv_m; // m/s^2
-
     input.velocity.throttle = i.cos_alpha * i.cos_beta * d_a_x_d_throttle;
     input.alpha.throttle = -i.sin_alpha * i.inv_velocity * i.inv_cos_beta * d_a_x_d_throttle;
     input.beta.throttle = -i.cos_alpha * i.sin_beta * i.inv_velocity * d_a_x_d_throttle;
@@ -389,7 +381,6 @@ fn jacobians_by_delta_e<R: Real>(
         - p.x_cg * d_normal_force_d_delta_e; // N*m/rad
     let cos_alpha_times_d_a_x_d_delta_e_plus_sin_alpha_times_d_a_z_d_delta_e = i.cos_alpha * d_a_x_d_delta_e
         + i.sin_alpha * d_a_z_d_delta_e;
-
     input.velocity.delta_e = i.cos_beta * cos_alpha_times_d_a_x_d_delta_e_plus_sin_alpha_times_d_a_z_d_delta_e;
     input.alpha.delta_e = i.inv_velocity * i.inv_cos_beta
         * (i.cos_alpha * d_a_z_d_delta_e - i.sin_alpha * d_a_x_d_delta_e);
@@ -415,7 +406,6 @@ fn jacobians_by_delta_a<R: Real>(
     let d_pitching_moment_d_delta_a = -p.x_cg * d_normal_force_d_delta_a; // N*m/rad
     let cos_alpha_times_d_a_x_d_delta_a = i.cos_alpha * d_a_x_d_delta_a;
     let sin_alpha_times_d_a_z_d_delta_a = i.sin_alpha * d_a_z_d_delta_a;
-
     input.velocity.delta_a = i.cos_beta * (cos_alpha_times_d_a_x_d_delta_a + sin_alpha_times_d_a_z_d_delta_a)
         + i.sin_beta * d_a_y_d_delta_a;
     input.alpha.delta_a = i.inv_velocity * i.inv_cos_beta
@@ -450,7 +440,6 @@ fn jacobians_by_delta_r<R: Real>(
     let d_pitching_moment_d_delta_r = -p.x_cg * d_normal_force_d_delta_r; // N*m/rad
     let cos_alpha_times_d_a_x_d_delta_r = i.cos_alpha * d_a_x_d_delta_r;
     let sin_alpha_times_d_a_z_d_delta_r = i.sin_alpha * d_a_z_d_delta_r;
-
     input.velocity.delta_r = i.cos_beta * (cos_alpha_times_d_a_x_d_delta_r + sin_alpha_times_d_a_z_d_delta_r)
         + i.sin_beta * d_a_y_d_delta_r;
     input.alpha.delta_r = i.inv_velocity * i.inv_cos_beta

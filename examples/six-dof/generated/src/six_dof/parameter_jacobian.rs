@@ -84,7 +84,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     let roll_rate_2_minus_yaw_rate_2 = i.roll_rate_2 - i.yaw_rate_2;
     let i_xx_pitch_rate_roll_rate = p.i_xx * x.pitch_rate * x.roll_rate;
     let i_xz_roll_torque_plus_i_xx_yaw_torque = p.i_xz * i.roll_torque + p.i_xx * i.yaw_torque;
-
     parameter.velocity.m = -p.inv_m_2
         * (i.cos_beta * cos_alpha_axial_force_plus_sin_alpha_normal_force + i.sin_beta * i.side_force);
     parameter.velocity.s = i.cos_beta * (cos_alpha_times_d_a_x_d_s + sin_alpha_times_d_a_z_d_s)
@@ -194,7 +193,6 @@ fn parameter_jacobian_by_environment<R: Real>(
     let cos_alpha_times_d_a_x_d_h_s = i.cos_alpha * d_a_x_d_h_s;
     let sin_alpha_times_d_a_z_d_h_s = i.sin_alpha * d_a_z_d_h_s;
     let cos_alpha_times_d_a_x_d_a_plus_sin_alpha_times_d_a_z_d_a = i.cos_alpha * d_a_x_d_a + i.sin_alpha * d_a_z_d_a;
-
     parameter.velocity.rho_0 = i.cos_beta * (cos_alpha_times_d_a_x_d_rho_0 + sin_alpha_times_d_a_z_d_rho_0)
         + i.sin_beta * d_a_y_d_rho_0;
     parameter.velocity.h_s = i.cos_beta * (cos_alpha_times_d_a_x_d_h_s + sin_alpha_times_d_a_z_d_h_s)
@@ -278,7 +276,6 @@ fn parameter_jacobian_by_c_l<R: Real>(
     let cos_alpha_times_d_a_x_d_c_l_delta_e_plus_sin_alpha_times_d_a_z_d_c_l_delta_e = i.cos_alpha * d_a_x_d_c_l_delta_e
         + i.sin_alpha * d_a_z_d_c_l_delta_e;
     let parameter_jacobian_term_3 = i.cos_alpha * d_a_x_d_c_l_mach_delta_e + i.sin_alpha * d_a_z_d_c_l_mach_delta_e;
-
     parameter.velocity.c_l_0 = i.cos_beta * cos_alpha_times_d_a_x_d_c_l_0_plus_sin_alpha_times_d_a_z_d_c_l_0;
     parameter.velocity.c_l_alpha = i.cos_beta
         * cos_alpha_times_d_a_x_d_c_l_alpha_plus_sin_alpha_times_d_a_z_d_c_l_alpha;
@@ -342,7 +339,6 @@ fn parameter_jacobian_by_c_d<R: Real>(
     let parameter_jacobian_term_1 = i.cos_alpha * q.d_a_x_d_c_d_alpha_2_mach + i.sin_alpha * q.d_a_z_d_c_d_alpha_2_mach;
     let parameter_jacobian_term_2 = i.cos_alpha * q.d_a_x_d_c_d_alpha_delta_e
         + i.sin_alpha * q.d_a_z_d_c_d_alpha_delta_e;
-
     parameter.velocity.c_d_0 = i.cos_beta * q.cos_alpha_times_d_a_z_d_c_l_0_plus_sin_alpha_times_d_a_z_d_c_d_0;
     parameter.velocity.c_d_mach = i.cos_beta * q.cos_alpha_times_d_a_x_d_c_d_mach_plus_sin_alpha_times_d_a_z_d_c_d_mach;
     parameter.velocity.c_d_mach_2 = i.cos_beta

@@ -52,7 +52,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
         * (R::TWO * s.d_reference_force_d_velocity * s.d_c_m_d_velocity
             + i.c_m * p.s * i.density
             + i.reference_force * d2_c_m_d_velocity_d_velocity); // lb*s^2/ft
-
     hessian.velocity.velocity.velocity = p.inv_m
         * (i.cos_alpha * d2_thrust_d_velocity_d_velocity - d2_drag_d_velocity_d_velocity);
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
@@ -96,7 +95,6 @@ fn hessian_by_altitude<R: Real>(
             + i.c_m * d2_reference_force_d_velocity_d_altitude); // lb*s/ft
     let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_altitude_d_altitude; // lb/ft
-
     hessian.velocity.altitude.velocity = p.inv_m
         * (i.cos_alpha * d2_thrust_d_velocity_d_altitude - d2_drag_d_velocity_d_altitude);
     hessian.velocity.altitude.altitude = p.inv_m
@@ -114,7 +112,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.gamma.gamma.velocity = -(i.gravity * s.inv_velocity_2 + i.inv_radius) * i.sin_gamma; // 1/ft
     hessian.gamma.gamma.altitude = i.sin_gamma
         * (x.velocity * i.inv_radius_2 + i.inv_velocity * s.d_gravity_d_altitude); // 1/s/ft
-
     hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma;
     hessian.velocity.gamma.gamma = i.gravity * i.sin_gamma;
     hessian.altitude.gamma.velocity = i.cos_gamma;
@@ -150,7 +147,6 @@ fn hessian_by_alpha<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i
         * s.d_c_m_d_alpha; // lb/rad
     let d2_c_m_d_alpha_d_alpha = R::TWO * p.c_m_alpha_2 + i.q_hat * p.two_c_m_alpha_2_q_hat; // 1/rad^2
     let d2_pitching_moment_d_alpha_d_alpha = i.reference_force * p.c_bar * d2_c_m_d_alpha_d_alpha; // ft*lb/rad^2
-
     hessian.velocity.alpha.velocity = -p.inv_m * (i.sin_alpha * s.d_thrust_d_velocity + d2_drag_d_velocity_d_alpha);
     hessian.velocity.alpha.altitude = -p.inv_m * (i.sin_alpha * s.d_thrust_d_altitude + d2_drag_d_altitude_d_alpha);
     hessian.velocity.alpha.alpha = -p.inv_m * (i.thrust * i.cos_alpha + d2_drag_d_alpha_d_alpha);
@@ -174,7 +170,6 @@ fn hessian_by_beta<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i:
     hessian.gamma.beta.altitude = i.sin_alpha * p.inv_m * i.inv_velocity
         * d2_thrust_d_altitude_d_beta; // rad/s/ft
     hessian.gamma.beta.alpha = i.cos_alpha * p.inv_m * i.inv_velocity * s.d_thrust_d_beta; // 1/s
-
     hessian.velocity.beta.velocity = i.cos_alpha * p.inv_m * d2_thrust_d_velocity_d_beta;
     hessian.velocity.beta.altitude = i.cos_alpha * p.inv_m * d2_thrust_d_altitude_d_beta;
     hessian.velocity.beta.alpha = -i.sin_alpha * p.inv_m * s.d_thrust_d_beta;
@@ -200,7 +195,6 @@ fn hessian_by_pitch_rate<R: Real>(
         * p.half_c_bar * i.inv_velocity; // s/rad^2
     let d2_pitching_moment_d_alpha_d_pitch_rate = i.reference_force * p.c_bar
         * d2_c_m_d_alpha_d_pitch_rate; // ft*lb*s/rad^2
-
     hessian.pitch_rate.pitch_rate.velocity = d2_pitching_moment_d_velocity_d_pitch_rate * p.inv_i_yy;
     hessian.pitch_rate.pitch_rate.altitude = d2_pitching_moment_d_altitude_d_pitch_rate * p.inv_i_yy;
     hessian.pitch_rate.pitch_rate.alpha = d2_pitching_moment_d_alpha_d_pitch_rate * p.inv_i_yy;
