@@ -8,10 +8,12 @@ mod candidates;
 mod commands;
 mod compilation;
 mod ensembles;
+mod found;
 mod generation;
 mod interpreted;
 mod kernel;
 mod lanes;
+mod layout;
 mod machine;
 mod modes;
 mod moments;
@@ -24,6 +26,7 @@ mod process;
 mod race;
 mod report;
 mod rk4;
+mod rounds;
 mod service;
 mod setting;
 mod steppers;
@@ -41,6 +44,7 @@ use serde_json::json;
 
 use arrays::Arrays;
 use ensembles::Ensembles;
+use found::Found;
 use points::Points;
 use report::Report;
 use setting::Setting;
@@ -100,7 +104,7 @@ fn run(args: &Args) -> Result<(), String> {
         let folder = if documented { root() } else { &setting.out };
         let files = [
             ("docs/benchmarks.md", report.markdown()),
-            (picture::PATH, picture::draw(&report)?),
+            (picture::PATH, picture::draw(&report.found)?),
         ];
         for (path, text) in files {
             let path = folder.join(path);
@@ -152,7 +156,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     ];
     let compilation = compilation::all(&candidates, &ensembles, &groups);
     let generate = |program: &PathBuf| generation::measure(program, &setting.out);
-    let mut report = Report {
+    Ok(Report::of(Found {
         machine: machine::describe(setting, &peers)?,
         compilation: setting.peers.then_some(compilation),
         generation: args.peers.as_ref().map(generate).transpose()?,
@@ -168,10 +172,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         modes,
         weak,
         bound: ports::measure(&setting.root)?,
-        bars: Vec::new(),
-    };
-    report.bars = bars::all(&report);
-    Ok(report)
+    }))
 }
 
 /// What the peers in Python are told.

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from .derivation import Derivation
 from .expression import dimensions_of, tree
 from .function import Entry, Output
 from .schema import Variable
-
-if TYPE_CHECKING:
-    from .model import Model
 
 _OF_TWO = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX)
 _OF_ONE = (ca.OP_FABS, ca.OP_SIGN)
 
 
-def add_boundaries(m: Model, rates: Mapping[str, ca.SX]) -> None:
+def add_boundaries(m: Derivation, rates: Mapping[str, ca.SX]) -> None:
     """The function `boundaries`, if there are any: each is 0 where the drift goes over to another formula."""
     found: dict[str, tuple[str, ca.SX]] = {}
     for owner, expr in _parts(m, rates):
@@ -45,7 +42,7 @@ def add_boundaries(m: Model, rates: Mapping[str, ca.SX]) -> None:
     m.add("boundaries", "boundaries", doc, "", [Output("", ("boundary",), tuple(entries))])
 
 
-def _parts(m: Model, rates: Mapping[str, ca.SX]) -> Iterator[tuple[str, ca.SX]]:
+def _parts(m: Derivation, rates: Mapping[str, ca.SX]) -> Iterator[tuple[str, ca.SX]]:
     """The quantities that the rates depend on, in their order, and the rates."""
     needed: set[str] = set()
     waiting = [symbol.name() for rate in rates.values() for symbol in ca.symvar(rate)]

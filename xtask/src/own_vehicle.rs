@@ -29,7 +29,7 @@ const PACKAGES: [(&str, &str); 5] = [
 /// The example of which `ahv new` makes a repository; the program has its name.
 const NEW: &str = "wang-stengel";
 /// The examples whose packages are checked in.
-const CHECKED_IN: [(&str, &[commands::Question]); 2] = [
+const CHECKED_IN: [(&str, &str); 2] = [
     ("six-dof", commands::SIX_DOF),
     ("winged-cone", commands::WINGED_CONE),
 ];
@@ -131,7 +131,7 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
 /// An example that is checked in with its package builds as it is, and answers as published.
 fn checked_in(
     example: &str,
-    questions: &[commands::Question],
+    questions: &str,
     answers: &Answers,
 ) -> Result<(), String> {
     let folder = shell::root().join("examples").join(example);
