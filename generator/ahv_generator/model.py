@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from . import motion, names, stochastic, units
-from .diagnostics import FamilyError, suggestion
+from .checked import checked
+from .diagnostics import FamilyError, Once, suggestion
 from .function import Entry, Function, NoiseStructure, Output
 from .graph import Graph, Intermediate
 from .polynomial import Polynomial
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
 # Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity may share a name.
 LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
 
-Rates = Mapping[Variable, ca.SX] | Mapping[str, ca.SX]
-Gains = Mapping[tuple[Variable, Variable], ca.SX] | Mapping[tuple[str, str], ca.SX]
+Number = ca.SX | float
+Rates = Mapping[Variable, Number] | Mapping[str, Number]
+Gains = Mapping[tuple[Variable, Variable], Number] | Mapping[tuple[str, str], Number]
 
 
 @dataclass
@@ -50,6 +52,7 @@ class Model:
 
     def __post_init__(self) -> None:
         self._section, self._equation = self.title, ""
+        self._once = Once()
         # Of a quantity the unit that its author states it in; the graph has those of the table.
         self._units: dict[str, str] = {}
         self.graph = Graph(self.table.units)
@@ -61,6 +64,7 @@ class Model:
 
     # Quantities
 
+    @checked
     def __getitem__(self, named: Named | Parameter) -> ca.SX:
         """The symbol of a quantity, a state, an input, a parameter or an argument, by its declaration or its name.
 
@@ -79,10 +83,12 @@ class Model:
         """The symbols of all parameters and coefficients, by their names in the generated code."""
         return {p.name: self.graph.symbols[f"p.{p.name}"] for p in self.table.parameters}
 
+    @checked
     def symbols(self, *named: Named | Parameter) -> tuple[ca.SX, ...]:
         """Several symbols at once: `V, gamma = model.symbols(velocity, path_angle)`."""
         return tuple(self[one] for one in named)
 
+    @checked
     @contextlib.contextmanager
     def section(self, title: str, equation: str = "") -> Iterator[None]:
         """A section of the paper: `with model.section("Air", "(2)"):`.
@@ -97,6 +103,7 @@ class Model:
         finally:
             self._section, self._equation = outer
 
+    @checked
     def define(
         self,
         name: Named,
@@ -138,6 +145,7 @@ class Model:
             section=self._section,
         )
 
+    @checked
     def fit(
         self,
         quantity: Quantity | str,
@@ -175,6 +183,7 @@ class Model:
             expr = per_variable * symbols[collect.name] + rest
         return self.define(name, expr, spec.symbol, spec.unit, spec.doc, equation=equation)
 
+    @checked
     def seen(self, named: Named, value: ca.SX | None = None) -> ca.SX:
         """A state as curve fits see it: with what parts add to it, such as the incidence of a gust.
 
@@ -195,6 +204,7 @@ class Model:
             raise FamilyError(f"no table of `{self.name}` has the quantity `{key}`", suggestion(key, declared))
         return declared[key]
 
+    @checked
     def derivative(self, expr: ca.SX, named: Named | Parameter) -> ca.SX:
         """The total derivative of an expression with respect to a state, an input or a parameter."""
         name = name_of(named)
@@ -205,6 +215,7 @@ class Model:
 
     # What the model is
 
+    @checked
     def motion(self, rates: Rates, equation: str | None = None) -> None:
         """The equations of motion: the time derivative of every state; with them their first and second derivatives.
 
@@ -212,8 +223,7 @@ class Model:
             FamilyError: when a rate is missing, or is of something that is not a state.
             ExpressionError: when a rate has not the unit of its state per second.
         """
-        if self.rates is not None:
-            raise FamilyError(f"the equations of motion of `{self.name}` are stated twice")
+        self._once("model.motion")
         named = {name_of(state): ca.SX(rate) for state, rate in rates.items()}
         states = self.names("state")
         self._refuse_unknown("states", named, states)
@@ -225,6 +235,7 @@ class Model:
         self.rates = {state: named[state] for state in states}
         motion.add_drift_and_derivatives(self, self.rates, self._equation if equation is None else equation)
 
+    @checked
     def diffusion(self, gains: Gains, doc: str, equation: str | None = None) -> None:
         """The diffusion G of dx = f dt + G dW, by (state, Wiener increment), read in the Itô sense.
 
@@ -233,18 +244,24 @@ class Model:
         """
         if self.rates is None:
             raise FamilyError("the diffusion follows the equations of motion: call `model.motion(...)` first")
+        self._once("model.diffusion")
         named = {(name_of(row), name_of(column)): ca.SX(gain) for (row, column), gain in gains.items()}
         rows, columns = self.names("state"), self.names("noise") if "noise" in self.bases else ()
         self._refuse_unknown("states", dict.fromkeys(row for row, _ in named), rows)
         self._refuse_unknown("Wiener increments", dict.fromkeys(column for _, column in named), columns)
+        idle = [column for column in columns if column not in [name for _, name in named]]
+        if idle:
+            raise FamilyError(f"the Wiener increment `{idle[0]}` of `{self.name}` has no gain: it would drive nothing")
         for (row, column), gain in named.items():
             unit = units.quotient(self.unit(row), self.unit(column))
             self.graph.check(f"the gain of `{column}` in the rate of `{row}`", gain, unit)
         equation = self._equation if equation is None else equation
         self.noise_structure = stochastic.add_diffusion(self, self.rates, named, doc, equation)
 
+    @checked
     def outputs(self, *named: Named) -> None:
         """Quantities that commands print and reports show beside the states, as one function and one vector."""
+        self._once("model.outputs")
         quantities = [self._defined(one) for one in named if name_of(one) not in self.names("state")]
         self._refuse_unknown("outputs", (q.name for q in quantities), self.graph.quantities)
         stated = [self._units.get(q.name, q.unit) for q in quantities]
@@ -261,11 +278,17 @@ class Model:
             raise FamilyError(
                 f"the model `{self.name}` has no equations of motion; state them with `model.motion(...)`"
             )
+        if "noise" in self.bases and self.noise_structure is None:
+            raise FamilyError(
+                f"the model `{self.name}` has the noise {_listed(list(self.names('noise')))}, but no diffusion",
+                "state it with `model.diffusion(...)`, or leave out `noise=`",
+            )
         if not self.bases.get("output"):
             raise FamilyError(f"`{self.name}` has no outputs; state them with `model.outputs(...)`")
         known = [name for basis in ("state", "input", "output") for name in self.names(basis)]
         self._refuse_unknown("states, inputs and outputs that a trim shows", self.traits.trim.shown, known)
 
+    @checked
     def evaluations(self, *named: Named) -> None:
         """Quantities that have a function each, for callers that need one alone."""
         for one in named:
@@ -274,6 +297,7 @@ class Model:
             expr = self.graph.symbols[quantity.name]
             self.add_scalar(quantity.name, "evaluations", doc, quantity.equation, expr, quantity.unit)
 
+    @checked
     def trim(
         self,
         *,
@@ -292,6 +316,7 @@ class Model:
         Raises:
             FamilyError: when there are not as many equations as unknowns, or a name fits nothing.
         """
+        self._once("model.trim")
         trim = Trim(tuple(given), tuple(sought), tuple(equations), *(tuple(map(name_of, n)) for n in (moving, shown)))
         rows, unknowns = [row.name for row in trim.equations], [one.name for one in trim.sought]
         states, givens = self.names("state"), [one.name for one in trim.given]
@@ -315,6 +340,7 @@ class Model:
             raise FamilyError(f"{_listed(both)} is given and sought in the trim of `{self.name}`")
         self.traits.trim = trim
 
+    @checked
     def mode(self, name: str, *states: Named, slowest: str | None = None) -> None:
         """Name the poles of some states; of an odd number of real poles the slowest may have a name of its own."""
         check_texts(name)
@@ -323,14 +349,18 @@ class Model:
         self._refuse_unknown("states of modes", (*of_others, *mode.states), self.names("state"))
         self.traits.modes += (mode,)
 
+    @checked
     def defaults(self, *, inputs: Iterable[Named] = (), outputs: Iterable[Named] = ()) -> None:
         """The inputs and the states that a transfer function is of, if a command names none."""
+        self._once("model.defaults")
         self.traits.inputs, self.traits.outputs = tuple(map(name_of, inputs)), tuple(map(name_of, outputs))
         self._refuse_unknown("default inputs", self.traits.inputs, self.names("input"))
         self._refuse_unknown("default outputs", self.traits.outputs, self.names("state"))
 
+    @checked
     def deviations(self, deviations: Mapping[Variable, float] | Mapping[str, float]) -> None:
         """The deviations of states and inputs that cost 1 in a regulator, in the units of the variables."""
+        self._once("model.deviations")
         self.traits.deviations = {name_of(variable): size for variable, size in deviations.items()}
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
@@ -338,8 +368,10 @@ class Model:
             if not 0 < size < math.inf:
                 raise FamilyError(f"the deviation of `{name}` is {size!r}; it must be positive and finite")
 
+    @checked
     def note(self, text: str) -> None:
         """A warning that commands print before they use the model."""
+        self._once("model.note")
         check_texts(text)
         self.traits.note = text
 
@@ -370,7 +402,10 @@ class Model:
 
     def variable(self, name: str) -> Variable:
         """A component of a basis by its name."""
-        return next(v for basis in self.bases.values() for v in basis if v.name == name)
+        known = {v.name: v for basis in self.bases.values() for v in basis}
+        if name not in known:
+            raise FamilyError(f"`{self.name}` has no variable `{name}`", suggestion(name, known))
+        return known[name]
 
     def leaves(self, basis: str) -> dict[str, str]:
         """Names of the entries of a basis, in order, with the names that they have in expressions."""
@@ -399,6 +434,7 @@ class Model:
         entries = tuple(Entry(key, found[key]) for key in at if not found[key].is_zero())
         return Output(name, (rows, columns), entries)
 
+    @checked
     def add(
         self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
     ) -> None:
@@ -415,6 +451,7 @@ class Model:
                     self.graph.check(f"the function `{name}`", entry.expr, output.unit)
         self.functions.append(Function(name, group, doc, equation, converted, compressed))
 
+    @checked
     def add_scalar(self, name: str, group: str, doc: str, equation: str, expr: ca.SX, unit: str) -> None:
         """Add a function with one number as its result."""
         self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])

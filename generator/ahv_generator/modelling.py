@@ -35,14 +35,14 @@ line.
 from __future__ import annotations
 
 import casadi
-from casadi import asin, atan, atan2, cos, exp, fmax, fmin, if_else, log, sin, sqrt, tan, tanh
+from casadi import acos, asin, atan, atan2, cos, cosh, exp, fmax, fmin, if_else, log, sin, sinh, sqrt, tan, tanh
 
 from .atmosphere import EXPONENTIAL, US_1976, Air, exponential_density, us_standard_atmosphere_1976
 from .diagnostics import FamilyError
 from .family import Family, Outline
 from .function import Entry, Output
 from .model import Gains, Model, Rates
-from .part import Part, PartModel
+from .part import Input, Join, Part, PartModel, State
 from .schema import (
     NOT_NEGATIVE,
     NOT_ZERO,
@@ -83,6 +83,8 @@ __all__ = [
     "FamilyError",
     "Gains",
     "Given",
+    "Input",
+    "Join",
     "Model",
     "Option",
     "Outline",
@@ -94,11 +96,14 @@ __all__ = [
     "Rates",
     "Rule",
     "Sought",
+    "State",
     "Variable",
+    "acos",
     "asin",
     "atan",
     "atan2",
     "cos",
+    "cosh",
     "exp",
     "exponential_density",
     "fmax",
@@ -106,6 +111,7 @@ __all__ = [
     "log",
     "select",
     "sin",
+    "sinh",
     "sqrt",
     "switch",
     "tan",

@@ -17,7 +17,9 @@ import sys
 sys.path += filter(None, os.environ.get(\"PYTHONPATH\", \"\").split(os.pathsep))
 
 from ahv_generator.__main__ import main
+from ahv_generator.parent import end_with_standard_input
 
+end_with_standard_input()
 sys.exit(main())
 ";
 
