@@ -441,6 +441,9 @@ class Model:
         """Add a function; the units of its outputs are turned into those of the table, and checked."""
         if name in [function.name for function in self.functions]:
             raise FamilyError(f"the name `{name}` is used twice, for two functions of `{self.name}`")
+        fault = names.fault_of_functions([name, *(function.name for function in self.functions)])
+        if fault is not None:
+            raise FamilyError(fault)
         system = self.table.units
         converted = tuple(
             replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs

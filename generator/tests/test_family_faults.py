@@ -52,6 +52,10 @@ def rule(terms: str) -> str:
     return f'{QUANTITIES}\nfrom ahv_generator.modelling import Rule\nfamily.rules(Rule("r", {terms}, POSITIVE, "z"))'
 
 
+def evaluations(name: str) -> str:
+    return after(OUTPUTS, f"    model.evaluations(model.define('{name}', x * 2, 'q', 'm', 'it'))")
+
+
 NOISE = 'Variable("w", "w", "s^0.5", "Wiener increment")'
 
 CASES = [
@@ -145,6 +149,8 @@ CASES = [
     (PARAMETERS, 'other = Parameter("o", "o", "s", "other", above=omega)', "other = ",
      "`o` is in `s`; it cannot exceed",
      None),
+    (OUTPUTS, evaluations("slopes"), "model.evaluations", "`slopes` is a function of the generated code", None),
+    (OUTPUTS, evaluations("drift_from"), "model.evaluations", "`drift_from` is a function of the generated", None),
     # rules
     (QUANTITIES, rule('((1.0, ("c_positon_2",)),)'), "family.rules", "names `c_positon_2`", "`c_position_2`"),
     (QUANTITIES, rule('((1.0, ("c_rate",)),)'), "family.rules", "names `c_rate`", "like `c_l_alpha_2`"),

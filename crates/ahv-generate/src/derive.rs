@@ -98,10 +98,15 @@ fn crash(stderr: &[u8], tables: &Tables) -> Option<Diagnostic> {
     let (_, report) = text.split_once("Fatal Python error: ")?;
     let message = format!("the Python interpreter crashed: {}", report.lines().next()?);
     let (file, line) = report.lines().find_map(|frame| {
-        let (path, place) = frame.trim().strip_prefix("File \"")?.split_once("\", line ")?;
+        let (path, place) = frame
+            .trim()
+            .strip_prefix("File \"")?
+            .split_once("\", line ")?;
         let line = place.split(' ').next()?.parse().ok()?;
         let folders = tables.sources.iter().filter_map(|it| it.path.parent());
-        let file = folders.into_iter().find_map(|it| Path::new(path).strip_prefix(it).ok())?;
+        let file = folders
+            .into_iter()
+            .find_map(|it| Path::new(path).strip_prefix(it).ok())?;
         Some((file.to_str()?.to_owned(), line))
     })?;
     Some(Diagnostic::of_line(&file, line, message))

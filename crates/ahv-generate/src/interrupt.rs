@@ -73,9 +73,7 @@ pub(crate) fn output(
     // Files, not pipes: nobody has to read them while the program runs.
     let mut start = || {
         let (out, err) = (tempfile::tempfile()?, tempfile::tempfile()?);
-        command
-            .stdout(out.try_clone()?)
-            .stderr(err.try_clone()?);
+        command.stdout(out.try_clone()?).stderr(err.try_clone()?);
         Ok((command.spawn()?, out, err))
     };
     let (mut child, out, err) = start().map_err(&failed)?;

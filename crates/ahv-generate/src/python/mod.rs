@@ -60,10 +60,9 @@ impl Generator {
             isolated(&self.interpreter)
         };
         // -P: a file in the current folder must not be taken for a module.
-        // A crash is reported with its place.
-        command.args(["-P", "-X", "utf8", "-X", "faulthandler"]);
+        command.args(["-P", "-X", "utf8"]).arg(&self.package);
         // The generator ends when this pipe is closed: with this process, however that ends.
-        command.arg(&self.package).stdin(Stdio::piped());
+        command.stdin(Stdio::piped());
         command
     }
 }
