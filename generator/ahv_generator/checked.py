@@ -21,6 +21,9 @@ _R = TypeVar("_R")
 # Where a value is inside an argument, the value, and what it should be.
 _Fault = tuple[str, object, str]
 
+# Types of what is declared; in equations a symbol stands for it.
+DECLARATIONS = ("Variable", "Parameter")
+
 _WORDS = {str: "a text", float: "a number", bool: "True or False", ca.SX: "an expression", type(None): "None"}
 
 
@@ -61,7 +64,9 @@ _hints_of = functools.cache(typing.get_type_hints)
 
 def _refuse(function: str, argument: str, value: object, hint: object) -> None:
     for inside, found, expected in _faults(value, hint):
-        raise FamilyError(f"`{function}`: `{argument}{inside}` is {_described(found)}; expected is {expected}")
+        declared = type(found).__name__ in DECLARATIONS and _WORDS[ca.SX] in expected
+        advice = "in equations its symbol stands for it: `model[...]`" if declared else None
+        raise FamilyError(f"`{function}`: `{argument}{inside}` is {_described(found)}; expected is {expected}", advice)
 
 
 def _faults(value: object, hint: object) -> Iterator[_Fault]:

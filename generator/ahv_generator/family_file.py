@@ -14,6 +14,7 @@ from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import NoReturn
 
+from .checked import DECLARATIONS
 from .diagnostics import MODULE, Diagnostic, FamilyError, TableError, suggestion
 from .expression import ExpressionError
 from .family import Family, Outline
@@ -106,6 +107,8 @@ class SourceFile:
             line = error.line
         if isinstance(error, SyntaxError) and error.filename == str(self.path):
             message, line = f"SyntaxError: {error.msg}", error.lineno
+        if isinstance(error, TypeError) and any(f"'{name}'" in message for name in DECLARATIONS):
+            help_line = "in equations its symbol stands for a variable or a parameter: `model[...]`"
         if isinstance(error, ModuleNotFoundError):
             help_line = "a family is one file: files beside it are not imported"
         return Diagnostic("family", self.shown, (), "key", message, help_line, line)

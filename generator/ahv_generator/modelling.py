@@ -34,11 +34,27 @@ line.
 
 from __future__ import annotations
 
-import casadi
-from casadi import acos, asin, atan, atan2, cos, cosh, exp, fmax, fmin, if_else, log, sin, sinh, sqrt, tan, tanh
-
 from .atmosphere import EXPONENTIAL, US_1976, Air, exponential_density, us_standard_atmosphere_1976
 from .diagnostics import FamilyError
+from .elementary import (
+    Expr,
+    acos,
+    asin,
+    atan,
+    atan2,
+    cos,
+    cosh,
+    exp,
+    fmax,
+    fmin,
+    log,
+    select,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 from .family import Family, Outline
 from .function import Entry, Output
 from .model import Gains, Model, Rates
@@ -56,17 +72,6 @@ from .schema import (
     switch,
 )
 from .traits import Equation, Given, Sought
-
-Expr = casadi.SX
-
-
-def select(condition: Expr, then: Expr | float, otherwise: Expr | float) -> Expr:
-    """`then` where the condition (`a < b`, or `<=`, `>`, `>=`) holds, else `otherwise`.
-
-    Both are computed; the slope is that of the one that is chosen.
-    """
-    return if_else(condition, then, otherwise)
-
 
 __all__ = [
     "EXPONENTIAL",

@@ -197,6 +197,9 @@ CASES = [
      " expression", None),
     (TRIM, TRIM + ', shown="energy"', "model.trim", "`Model.trim`: `shown` is the text 'energy'; expected is a list",
      None),
+    (ENERGY, after(ENERGY, "from ahv_generator.modelling import sin", "sin(rate)"), "sin(rate)", "`sin`: `x` is the"
+     " Variable `rate`; expected is an expression or a number", "`model[...]`"),
+    (ENERGY, after(ENERGY, "2 * omega"), "2 * omega", "unsupported operand type(s) for *", "`model[...]`"),
     (FIT, "model.fit(position)", "model.motion", "`Model.fit`: `quantity` is the Variable `position`; expected is a"
      " Quantity or a text", None),
     (RATES, "{position: None, rate: u}", "model.motion", "`Model.motion`: `rates[the Variable `position`]` is `None`;"
