@@ -139,7 +139,7 @@ class FamilyFile(SourceFile):
 class PartFile(SourceFile):
     """The file of a part."""
 
-    def part(self) -> tuple[dict[str, Join], Callable[[dict[str, Variable]], Part]]:
+    def part(self) -> tuple[dict[str, Join], Callable[[dict[str, Variable], Place | None], Part]]:
         """Run the file, and return what its part joins by name, and what makes the part of the variables joined.
 
         Raises:
@@ -153,8 +153,8 @@ class PartFile(SourceFile):
             hints = typing.get_type_hints(function, include_extras=True)
             joins = {name: _join(hints.get(name)) for name in inspect.signature(function).parameters}
 
-        def made(joined: dict[str, Variable]) -> Part:
-            with self.faults():
+        def made(joined: dict[str, Variable], at: Place | None) -> Part:
+            with self.faults(at):
                 part = function(**joined)
                 if not isinstance(part, Part):
                     raise FamilyError("the function `part` returns no part", line=1)

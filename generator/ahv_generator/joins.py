@@ -27,7 +27,7 @@ class _Listed:
     """An entry of `[parts]`: the file of the part, what it joins, and what that is called in the model."""
 
     file: PartFile
-    made: Callable[[dict[str, Variable]], Part]
+    made: Callable[[dict[str, Variable], Place | None], Part]
     joins: Mapping[str, Join]
     names: Mapping[str, str]
 
@@ -150,8 +150,9 @@ class Joins:
             joined = self._joined(of.name, name, listed, bases, drivers)
             if len(joined) < len(listed.joins):
                 break
-            part = listed.made(joined)
-            instance = Instance(name, part, partial(listed.file.faults, Place(self.faults.file, (PARTS, name))))
+            place = Place(self.faults.file, (PARTS, name))
+            part = listed.made(joined, place)
+            instance = Instance(name, part, partial(listed.file.faults, place))
             bases = joined_bases(bases, [instance])
             drivers |= {driven.name: name for driven in part.drives}
             instances.append(instance)
