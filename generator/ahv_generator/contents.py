@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from .polynomial import Polynomial
 from .schema import Schema
@@ -37,12 +38,13 @@ class ParameterSet:
 
 @dataclass(frozen=True)
 class Contents:
-    """What models are derived from: the unit system, parameters in order, and the polynomial of each quantity.
+    """What models are derived from: where it stands, the unit system, parameters in order, and the polynomial of each quantity.
 
     `emitted` are the groups of functions that are emitted, None for all; `values` are by paths, `box` is the validity
     box with angles in rad.
     """
 
+    path: Path
     units: str
     schema: Schema
     parameters: tuple[TableParameter, ...]

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import casadi as ca
 
-from . import units
+from . import names, units
+from .checked import checked
 from .contents import Contents
-from .diagnostics import FamilyError
+from .diagnostics import FamilyError, suggestion
 from .function import Entry, Function, Output
 from .graph import Graph
 from .schema import Variable
@@ -48,7 +49,10 @@ class Derivation:
 
     def variable(self, name: str) -> Variable:
         """A component of a basis by its name."""
-        return next(v for basis in self.bases.values() for v in basis if v.name == name)
+        known = {v.name: v for basis in self.bases.values() for v in basis}
+        if name not in known:
+            raise FamilyError(f"`{self.name}` has no variable `{name}`", suggestion(name, known))
+        return known[name]
 
     def leaves(self, basis: str) -> dict[str, str]:
         """Names of the entries of a basis, in order, with the names that they have in expressions."""
@@ -77,12 +81,16 @@ class Derivation:
         entries = tuple(Entry(key, found[key]) for key in at if not found[key].is_zero())
         return Output(name, (rows, columns), entries)
 
+    @checked
     def add(
         self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
     ) -> None:
         """Add a function; the units of its outputs are turned into those of the table, and checked."""
         if name in [function.name for function in self.functions]:
             raise FamilyError(f"the name `{name}` is used twice, for two functions of `{self.name}`")
+        fault = names.fault_of_functions([name, *(function.name for function in self.functions)])
+        if fault is not None:
+            raise FamilyError(fault)
         system = self.table.units
         converted = tuple(
             replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs
@@ -93,6 +101,7 @@ class Derivation:
                     self.graph.check(f"the function `{name}`", entry.expr, output.unit)
         self.functions.append(Function(name, group, doc, equation, converted, compressed))
 
+    @checked
     def add_scalar(self, name: str, group: str, doc: str, equation: str, expr: ca.SX, unit: str) -> None:
         """Add a function with one number as its result."""
         self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])

@@ -10,16 +10,18 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from . import motion, names, stochastic, units
+from .checked import checked
 from .derivation import Derivation
-from .diagnostics import FamilyError, suggestion
+from .diagnostics import FamilyError, Once, suggestion
 from .function import Entry, NoiseStructure, Output
 from .graph import Intermediate
 from .polynomial import Polynomial
 from .schema import Parameter, Quantity, Variable, check_texts
 from .traits import Equation, Given, Mode, Named, Sought, Traits, Trim, name_of
 
-Rates = Mapping[Variable, ca.SX] | Mapping[str, ca.SX]
-Gains = Mapping[tuple[Variable, Variable], ca.SX] | Mapping[tuple[str, str], ca.SX]
+Number = ca.SX | float
+Rates = Mapping[Variable, Number] | Mapping[str, Number]
+Gains = Mapping[tuple[Variable, Variable], Number] | Mapping[tuple[str, str], Number]
 
 
 @dataclass
@@ -38,11 +40,13 @@ class Model(Derivation):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._section, self._equation = self.title, ""
+        self._once = Once()
         # Of a quantity the unit that its author states it in; the graph has those of the table.
         self._units: dict[str, str] = {}
 
     # Quantities
 
+    @checked
     def __getitem__(self, named: Named | Parameter) -> ca.SX:
         """The symbol of a quantity, a state, an input, a parameter or an argument, by its declaration or its name.
 
@@ -61,10 +65,12 @@ class Model(Derivation):
         """The symbols of all parameters and coefficients, by their names in the generated code."""
         return {p.name: self.graph.symbols[f"p.{p.name}"] for p in self.table.parameters}
 
+    @checked
     def symbols(self, *named: Named | Parameter) -> tuple[ca.SX, ...]:
         """Several symbols at once: `V, gamma = model.symbols(velocity, path_angle)`."""
         return tuple(self[one] for one in named)
 
+    @checked
     @contextlib.contextmanager
     def section(self, title: str, equation: str = "") -> Iterator[None]:
         """A section of the paper: `with model.section("Air", "(2)"):`.
@@ -79,6 +85,7 @@ class Model(Derivation):
         finally:
             self._section, self._equation = outer
 
+    @checked
     def define(
         self,
         name: Named,
@@ -120,6 +127,7 @@ class Model(Derivation):
             section=self._section,
         )
 
+    @checked
     def fit(
         self,
         quantity: Quantity | str,
@@ -157,6 +165,7 @@ class Model(Derivation):
             expr = per_variable * symbols[collect.name] + rest
         return self.define(name, expr, spec.symbol, spec.unit, spec.doc, equation=equation)
 
+    @checked
     def seen(self, named: Named, value: ca.SX | None = None) -> ca.SX:
         """A state as curve fits see it: with what parts add to it, such as the incidence of a gust.
 
@@ -177,6 +186,7 @@ class Model(Derivation):
             raise FamilyError(f"no table of `{self.name}` has the quantity `{key}`", suggestion(key, declared))
         return declared[key]
 
+    @checked
     def derivative(self, expr: ca.SX, named: Named | Parameter) -> ca.SX:
         """The total derivative of an expression with respect to a state, an input or a parameter."""
         name = name_of(named)
@@ -187,6 +197,7 @@ class Model(Derivation):
 
     # What the model is
 
+    @checked
     def motion(self, rates: Rates, equation: str | None = None) -> None:
         """The equations of motion: the time derivative of every state; with them their first and second derivatives.
 
@@ -194,8 +205,7 @@ class Model(Derivation):
             FamilyError: when a rate is missing, or is of something that is not a state.
             ExpressionError: when a rate has not the unit of its state per second.
         """
-        if self.rates is not None:
-            raise FamilyError(f"the equations of motion of `{self.name}` are stated twice")
+        self._once("model.motion")
         named = {name_of(state): ca.SX(rate) for state, rate in rates.items()}
         states = self.names("state")
         self._refuse_unknown("states", named, states)
@@ -207,6 +217,7 @@ class Model(Derivation):
         self.rates = {state: named[state] for state in states}
         motion.add_drift_and_derivatives(self, self.rates, self._equation if equation is None else equation)
 
+    @checked
     def diffusion(self, gains: Gains, doc: str, equation: str | None = None) -> None:
         """The diffusion G of dx = f dt + G dW, by (state, Wiener increment), read in the Itô sense.
 
@@ -215,18 +226,24 @@ class Model(Derivation):
         """
         if self.rates is None:
             raise FamilyError("the diffusion follows the equations of motion: call `model.motion(...)` first")
+        self._once("model.diffusion")
         named = {(name_of(row), name_of(column)): ca.SX(gain) for (row, column), gain in gains.items()}
         rows, columns = self.names("state"), self.names("noise") if "noise" in self.bases else ()
         self._refuse_unknown("states", dict.fromkeys(row for row, _ in named), rows)
         self._refuse_unknown("Wiener increments", dict.fromkeys(column for _, column in named), columns)
+        idle = [column for column in columns if column not in [name for _, name in named]]
+        if idle:
+            raise FamilyError(f"the Wiener increment `{idle[0]}` of `{self.name}` has no gain: it would drive nothing")
         for (row, column), gain in named.items():
             unit = units.quotient(self.unit(row), self.unit(column))
             self.graph.check(f"the gain of `{column}` in the rate of `{row}`", gain, unit)
         equation = self._equation if equation is None else equation
         self.noise_structure = stochastic.add_diffusion(self, self.rates, named, doc, equation)
 
+    @checked
     def outputs(self, *named: Named) -> None:
         """Quantities that commands print and reports show beside the states, as one function and one vector."""
+        self._once("model.outputs")
         quantities = [self._defined(one) for one in named if name_of(one) not in self.names("state")]
         self._refuse_unknown("outputs", (q.name for q in quantities), self.graph.quantities)
         stated = [self._units.get(q.name, q.unit) for q in quantities]
@@ -243,11 +260,17 @@ class Model(Derivation):
             raise FamilyError(
                 f"the model `{self.name}` has no equations of motion; state them with `model.motion(...)`"
             )
+        if "noise" in self.bases and self.noise_structure is None:
+            raise FamilyError(
+                f"the model `{self.name}` has the noise {_listed(list(self.names('noise')))}, but no diffusion",
+                "state it with `model.diffusion(...)`, or leave out `noise=`",
+            )
         if not self.bases.get("output"):
             raise FamilyError(f"`{self.name}` has no outputs; state them with `model.outputs(...)`")
         known = [name for basis in ("state", "input", "output") for name in self.names(basis)]
         self._refuse_unknown("states, inputs and outputs that a trim shows", self.traits.trim.shown, known)
 
+    @checked
     def evaluations(self, *named: Named) -> None:
         """Quantities that have a function each, for callers that need one alone."""
         for one in named:
@@ -256,6 +279,7 @@ class Model(Derivation):
             expr = self.graph.symbols[quantity.name]
             self.add_scalar(quantity.name, "evaluations", doc, quantity.equation, expr, quantity.unit)
 
+    @checked
     def trim(
         self,
         *,
@@ -274,6 +298,7 @@ class Model(Derivation):
         Raises:
             FamilyError: when there are not as many equations as unknowns, or a name fits nothing.
         """
+        self._once("model.trim")
         trim = Trim(tuple(given), tuple(sought), tuple(equations), *(tuple(map(name_of, n)) for n in (moving, shown)))
         rows, unknowns = [row.name for row in trim.equations], [one.name for one in trim.sought]
         states, givens = self.names("state"), [one.name for one in trim.given]
@@ -297,6 +322,7 @@ class Model(Derivation):
             raise FamilyError(f"{_listed(both)} is given and sought in the trim of `{self.name}`")
         self.traits.trim = trim
 
+    @checked
     def mode(self, name: str, *states: Named, slowest: str | None = None) -> None:
         """Name the poles of some states; of an odd number of real poles the slowest may have a name of its own."""
         check_texts(name)
@@ -305,14 +331,18 @@ class Model(Derivation):
         self._refuse_unknown("states of modes", (*of_others, *mode.states), self.names("state"))
         self.traits.modes += (mode,)
 
+    @checked
     def defaults(self, *, inputs: Iterable[Named] = (), outputs: Iterable[Named] = ()) -> None:
         """The inputs and the states that a transfer function is of, if a command names none."""
+        self._once("model.defaults")
         self.traits.inputs, self.traits.outputs = tuple(map(name_of, inputs)), tuple(map(name_of, outputs))
         self._refuse_unknown("default inputs", self.traits.inputs, self.names("input"))
         self._refuse_unknown("default outputs", self.traits.outputs, self.names("state"))
 
+    @checked
     def deviations(self, deviations: Mapping[Variable, float] | Mapping[str, float]) -> None:
         """The deviations of states and inputs that cost 1 in a regulator, in the units of the variables."""
+        self._once("model.deviations")
         self.traits.deviations = {name_of(variable): size for variable, size in deviations.items()}
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
@@ -320,8 +350,10 @@ class Model(Derivation):
             if not 0 < size < math.inf:
                 raise FamilyError(f"the deviation of `{name}` is {size!r}; it must be positive and finite")
 
+    @checked
     def note(self, text: str) -> None:
         """A warning that commands print before they use the model."""
+        self._once("model.note")
         check_texts(text)
         self.traits.note = text
 

@@ -13,8 +13,9 @@ from .contents import Contents, ParameterSet, TableParameter
 from .diagnostics import Faults, TableError, suggestion
 from .entries import Entries, Provenance
 from .family import Family, Outline
-from .family_file import FamilyFile
-from .joins import JOINED, PARTS, Join, Joins
+from .family_file import FamilyFile, Place
+from .joined import JOINED, PARTS
+from .joins import Joins, JoinText
 from .model import Model
 from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable
@@ -31,14 +32,13 @@ class Table(Contents):
     `schemas` are what a table of one of the models by itself holds.
     """
 
-    path: Path
     name: str
     models: tuple[str, ...]
     file: FamilyFile
     family: Family
     schemas: Mapping[str, Schema]
     sets: tuple[ParameterSet, ...]
-    joins: tuple[Join, ...]
+    joins: tuple[JoinText, ...]
 
     @property
     def audited(self) -> tuple[str, ...]:
@@ -55,7 +55,8 @@ class Table(Contents):
         Raises:
             TableError: with what the family's file states wrongly.
         """
-        with self.file.faults():
+        is_joined = bool(self.family.models[name].instances)
+        with self.file.faults(Place(self.path.name, (JOINED, name)) if is_joined else None):
             return self.family.build(name, self)
 
     def only_for(self, section: str, key: str) -> list[str]:
@@ -394,12 +395,8 @@ class _Polynomial:
         return powers
 
     def _coefficient(self, key: str, powers: Powers) -> list[Term]:
-        spec, unit = self.spec, self.spec.unit
-        for variable, exponent in powers:
-            for _ in range(exponent):
-                unit = units.quotient(unit, self.variables[variable].unit)
-        path = (spec.key, key)
-        provenance = self.reader.entries.entry(path, unit)
+        spec, path = self.spec, (self.spec.key, key)
+        provenance = self.reader.entries.entry(path, spec.unit_of(powers))
         if provenance is None:
             return []
         name = f"{spec.key.lower()}_{monomial_name(powers)}"
