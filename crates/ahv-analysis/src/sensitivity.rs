@@ -4,8 +4,7 @@
 //! with the parameter and with the trim: central differences of the exact Jacobians along both. A root of
 //! det(S − λM) = 0 moves by wᴴ dS v / wᴴ M v with its left and right null vectors w and v.
 
-use faer::{Mat, MatRef};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, FullPivLU};
 
 /// Passes of the scaling of rows and columns.
 const PASSES: usize = 6;
@@ -36,15 +35,9 @@ impl RootVectors {
             return None;
         }
         let (rows, columns) = balance(&mut shifted);
-        let svd = Mat::from_fn(shifted.nrows(), shifted.ncols(), |i, j| shifted[(i, j)])
-            .svd()
-            .ok()?;
-        // Singular values descend.
-        let least = shifted.nrows().checked_sub(1)?;
-        let scaled = |vectors: MatRef<'_, Complex<f64>>, scale: &DVector<f64>| {
-            DVector::from_fn(scale.len(), |i, _| vectors[(i, least)] * scale[i])
-        };
-        let (left, right) = (scaled(svd.U(), &rows), scaled(svd.V(), &columns));
+        let (left, right) = null_vectors(shifted)?;
+        let left = left.component_mul(&rows.map(complex));
+        let right = right.component_mul(&columns.map(complex));
         let carried = mass.map(complex) * &right;
         let weight = left.dotc(&carried);
         let distinct = weight.re.hypot(weight.im) > DISTINCT * left.norm() * carried.norm();
@@ -60,6 +53,27 @@ impl RootVectors {
         let moved = change.map(|entry| Complex::new(entry, 0.0)) * &self.right;
         self.left.dotc(&moved) / self.weight
     }
+}
+
+/// Left and right null vector of a square matrix that is singular but for rounding: with complete pivoting the last pivot is
+/// the one that counts as 0. `None` where another one is 0, too.
+fn null_vectors(
+    matrix: DMatrix<Complex<f64>>,
+) -> Option<(DVector<Complex<f64>>, DVector<Complex<f64>>)> {
+    let rest = matrix.nrows().checked_sub(1)?;
+    let factors = FullPivLU::new(matrix);
+    let (lower, upper) = (factors.l(), factors.u());
+    let known = -upper.view((0, rest), (rest, 1));
+    let right = upper
+        .view((0, 0), (rest, rest))
+        .solve_upper_triangular(&known)?;
+    let mut right = right.column(0).push(Complex::ONE);
+    factors.q().inv_permute_rows(&mut right);
+    let mut left = DVector::zeros(rest + 1);
+    left[rest] = Complex::ONE;
+    let mut left = lower.adjoint().solve_upper_triangular(&left)?;
+    factors.p().inv_permute_rows(&mut left);
+    Some((left, right))
 }
 
 /// Scales rows and columns until their largest entries are near 1, and gives the factors (Ruiz 2001).
