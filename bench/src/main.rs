@@ -10,6 +10,7 @@ mod compilation;
 mod ensembles;
 mod generation;
 mod interpreted;
+mod interval;
 mod kernel;
 mod lanes;
 mod machine;
@@ -144,6 +145,9 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     let modes = modes::measure(ensembles, arrays.as_ref(), races)?;
     let process = |program: &PathBuf| process::measure(setting, program, &problem());
     let processes = args.peers.as_ref().map(process).transpose()?;
+    let interval =
+        |program: &PathBuf| interval::measure(setting, program, ensembles, races.div_ceil(2));
+    let interval = args.peers.as_ref().map(interval).transpose()?;
     let weak = setting.peers.then(|| weak::measure(races)).transpose()?;
     let groups = [
         ("RK4 of DCOM", &trajectories.finishes),
@@ -165,6 +169,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         trajectories,
         monte_carlo,
         processes,
+        interval,
         modes,
         weak,
         bound: ports::measure(&setting.root)?,

@@ -9,6 +9,7 @@ use crate::bars::{self, Bar};
 use crate::candidates::LANES;
 use crate::compilation::{self, Compilation};
 use crate::generation::Generation;
+use crate::interval::Interval;
 use crate::machine::Machine;
 use crate::modes::Modes;
 use crate::monte_carlo::MonteCarlo;
@@ -44,6 +45,8 @@ pub(crate) struct Report {
     pub(crate) monte_carlo: MonteCarlo,
     /// With peers alone.
     pub(crate) processes: Option<Vec<Process>>,
+    /// With peers alone.
+    pub(crate) interval: Option<Interval>,
     pub(crate) modes: Modes,
     /// With peers alone: it takes minutes.
     pub(crate) weak: Option<Weak>,
@@ -104,6 +107,7 @@ impl Report {
         ];
         tables.extend(self.monte_carlo.tables());
         tables.extend(self.processes.as_deref().map(process::table));
+        tables.extend(self.interval.as_ref().map(Interval::table));
         tables.push(self.modes.table());
         tables.extend(self.weak.iter().flat_map(|it| [it.errors(), it.times()]));
         let drift = self.lane_drift();

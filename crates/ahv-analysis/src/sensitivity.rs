@@ -9,6 +9,9 @@ use nalgebra::{Complex, DMatrix, DVector, FullPivLU};
 /// Passes of the scaling of rows and columns.
 const PASSES: usize = 6;
 
+/// A difference of up to so many roundings of its terms counts as 0.
+const ROUNDINGS: f64 = 100.0;
+
 /// Smallest |wᴴ M v| / (|w| |M v|) of a root that is told apart from others.
 const DISTINCT: f64 = 1e-10;
 
@@ -27,7 +30,15 @@ impl RootVectors {
     /// `None` for a root that is not simple, or not finite.
     pub fn new(matrix: &DMatrix<f64>, mass: &DMatrix<f64>, root: Complex<f64>) -> Option<Self> {
         let complex = |entry: f64| Complex::new(entry, 0.0);
-        let mut shifted = matrix.map(complex) - mass.map(complex) * root;
+        // What rounding leaves of a difference would grow when rows and columns are scaled.
+        let mut shifted = matrix.zip_map(mass, |entry, mass| {
+            let (entry, subtracted) = (complex(entry), root * mass);
+            let (difference, size) = (entry - subtracted, entry.l1_norm() + subtracted.l1_norm());
+            if difference.l1_norm() <= ROUNDINGS * f64::EPSILON * size {
+                return Complex::ZERO;
+            }
+            difference
+        });
         if shifted
             .iter()
             .any(|z| !(z.re.is_finite() && z.im.is_finite()))
