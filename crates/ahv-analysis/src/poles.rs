@@ -13,6 +13,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use crate::linearize::LinearSystem;
 use balance::{balance, similar};
 use blocks::blocks;
+use eigen::Eigen;
 pub use zeros::{Decoupling, Zero, Zeros, zeros};
 
 /// A pole with the mode that it belongs to.
@@ -85,7 +86,8 @@ type Found = (Complex<f64>, DVector<f64>);
 fn of_block(balanced: &DMatrix<f64>, block: &[usize]) -> Result<Vec<Found>, PolesError> {
     let n = block.len();
     let matrix = DMatrix::from_fn(n, n, |row, column| balanced[(block[row], block[column])]);
-    let (values, vectors) = eigen::values_and_vectors(&matrix).ok_or(PolesError::NoConvergence)?;
+    let Eigen { values, vectors } =
+        eigen::values_and_vectors(&matrix).ok_or(PolesError::NoConvergence)?;
     let participation = participation(&vectors);
     let pole = |index: usize| {
         let mut of_all = DVector::zeros(balanced.nrows());

@@ -15,11 +15,14 @@ const ROUNDINGS: f64 = 100.0;
 /// Smallest |wᴴ M v| / (|w| |M v|) of a root that is told apart from others.
 const DISTINCT: f64 = 1e-10;
 
+/// A vector of complex numbers.
+type ComplexVector = DVector<Complex<f64>>;
+
 /// A root λ of det(S − λM) = 0 with its null vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RootVectors {
-    left: DVector<Complex<f64>>,
-    right: DVector<Complex<f64>>,
+    left: ComplexVector,
+    right: ComplexVector,
     weight: Complex<f64>,
 }
 
@@ -68,9 +71,7 @@ impl RootVectors {
 
 /// Left and right null vector of a square matrix that is singular but for rounding: with complete pivoting the last pivot is
 /// the one that counts as 0. `None` where another one is 0, too.
-fn null_vectors(
-    matrix: DMatrix<Complex<f64>>,
-) -> Option<(DVector<Complex<f64>>, DVector<Complex<f64>>)> {
+fn null_vectors(matrix: DMatrix<Complex<f64>>) -> Option<(ComplexVector, ComplexVector)> {
     let rest = matrix.nrows().checked_sub(1)?;
     let factors = FullPivLU::new(matrix);
     let (lower, upper) = (factors.l(), factors.u());

@@ -14,16 +14,21 @@ struct Form {
     values: Vec<Complex<f64>>,
 }
 
+/// Eigenvalues as [`values`] gives them, and their eigenvectors.
+pub(super) struct Eigen {
+    pub(super) values: Vec<Complex<f64>>,
+    /// Column by column.
+    pub(super) vectors: DMatrix<Complex<f64>>,
+}
+
 /// Eigenvalues; the two of a pair are each other's conjugates to the bit, the upper one first. `None` if the iteration does
 /// not converge, as with entries that are not finite.
 pub(crate) fn values(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     form(matrix).map(|form| form.values)
 }
 
-/// Eigenvalues as [`values`] gives them, and their eigenvectors, column by column.
-pub(super) fn values_and_vectors(
-    matrix: &DMatrix<f64>,
-) -> Option<(Vec<Complex<f64>>, DMatrix<Complex<f64>>)> {
+/// Eigenvalues and eigenvectors; `None` as of [`values`].
+pub(super) fn values_and_vectors(matrix: &DMatrix<f64>) -> Option<Eigen> {
     let form = form(matrix)?;
     let mut basis = form.basis.map(Complex::from);
     let mut triangle = form.matrix.map(Complex::from);
@@ -32,8 +37,10 @@ pub(super) fn values_and_vectors(
             split(&mut basis, &mut triangle, row, *upper);
         }
     }
-    let vectors = basis * of_triangle(&triangle);
-    Some((form.values, vectors))
+    Some(Eigen {
+        vectors: basis * of_triangle(&triangle),
+        values: form.values,
+    })
 }
 
 /// The iteration stalls where a matrix is its own next iterate, as one that only permutes is. Mirrored, it is not.
@@ -112,7 +119,7 @@ mod tests {
 
     /// A v = v λ, to `tolerance` of the largest entry.
     fn assert_solved(matrix: &DMatrix<f64>, tolerance: f64) {
-        let (values, vectors) = values_and_vectors(matrix).expect("converges");
+        let Eigen { values, vectors } = values_and_vectors(matrix).expect("converges");
         let scaled = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(values));
         let rest = matrix.map(Complex::from) * &vectors - &vectors * scaled;
         for (of, rest) in vectors.column_iter().zip(rest.column_iter()) {
