@@ -140,7 +140,7 @@ fn own(program: &Path, gains: &Path, step: f64, seed: u64) -> Result<Vec<f64>, S
     }
     let told: Value = serde_json::from_str(&commands::output(&mut command)?)
         .map_err(|error| format!("error: ahv montecarlo: {error}"))?;
-    let value = |key: &str| told[key][QUANTITY]["value"].as_f64();
+    let value = |key: &str| told[key][QUANTITY].as_f64();
     let values = value("mean").zip(value("std"));
     let (mean, deviation) = values.ok_or("error: ahv montecarlo tells no deviation")?;
     Ok(vec![mean, deviation])

@@ -72,7 +72,7 @@ struct Args {
 /// Random points of the box of validity.
 const POINTS: usize = 1000;
 /// Rounds of kernels, of steppers and solvers, and of ensembles: with peers and without.
-const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 11.0], [200.0, 5.0, 5.0]];
+const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 7.0], [200.0, 5.0, 5.0]];
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
