@@ -8,10 +8,10 @@ use std::ffi::c_int;
 
 use libloading::Library;
 
-use crate::interval;
+use crate::interval::problem as interval;
 use crate::kernel;
-use crate::modes::{self, MODES, Sums};
-use crate::monte_carlo::{self, STATES};
+use crate::modes::problem as modes;
+use crate::monte_carlo::problem as monte_carlo;
 use crate::setting::Setting;
 
 type MonteCarlo = unsafe extern "C" fn(
@@ -85,8 +85,8 @@ impl Ensembles {
         flight: &monte_carlo::Flight,
         threads: usize,
         seed: u64,
-    ) -> Vec<[f64; STATES]> {
-        let mut ends = vec![[0.0; STATES]; monte_carlo::MEMBERS];
+    ) -> Vec<[f64; monte_carlo::STATES]> {
+        let mut ends = vec![[0.0; monte_carlo::STATES]; monte_carlo::MEMBERS];
         let parameters = flight.parameters.to_array();
         // SAFETY: the arrays have the lengths of SDCOM's vectors, and `ends` has room for as many members.
         unsafe {
@@ -141,11 +141,11 @@ impl Ensembles {
     /// Sums of all modes.
     pub(crate) fn modes(
         &self,
-        rates: &[modes::Rates; MODES],
+        rates: &[modes::Rates; modes::MODES],
         threads: usize,
         seed: u64,
-    ) -> Vec<Sums> {
-        let mut parts = vec![[[0.0; 4]; modes::STEPS]; threads * MODES];
+    ) -> Vec<modes::Sums> {
+        let mut parts = vec![[[0.0; 4]; modes::STEPS]; threads * modes::MODES];
         // SAFETY: `rates` holds five numbers a mode, and `parts` has room for what each thread sums.
         unsafe {
             (self.modes)(

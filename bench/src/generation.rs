@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::commands;
-use crate::timing::Spread;
+use crate::rounds::Spread;
 
 const RUNS: u32 = 5;
 

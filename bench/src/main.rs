@@ -8,11 +8,13 @@ mod candidates;
 mod commands;
 mod compilation;
 mod ensembles;
+mod found;
 mod generation;
 mod interpreted;
 mod interval;
 mod kernel;
 mod lanes;
+mod layout;
 mod machine;
 mod modes;
 mod moments;
@@ -25,6 +27,7 @@ mod process;
 mod race;
 mod report;
 mod rk4;
+mod rounds;
 mod service;
 mod setting;
 mod steppers;
@@ -42,6 +45,7 @@ use serde_json::json;
 
 use arrays::Arrays;
 use ensembles::Ensembles;
+use found::Found;
 use points::Points;
 use report::Report;
 use setting::Setting;
@@ -101,7 +105,7 @@ fn run(args: &Args) -> Result<(), String> {
         let folder = if documented { root() } else { &setting.out };
         let files = [
             ("docs/benchmarks.md", report.markdown()),
-            (picture::PATH, picture::draw(&report)?),
+            (picture::PATH, picture::draw(&report.found)?),
         ];
         for (path, text) in files {
             let path = folder.join(path);
@@ -156,7 +160,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     ];
     let compilation = compilation::all(&candidates, &ensembles, &groups);
     let generate = |program: &PathBuf| generation::measure(program, &setting.out);
-    let mut report = Report {
+    Ok(Report::of(Found {
         machine: machine::describe(setting, &peers)?,
         compilation: setting.peers.then_some(compilation),
         generation: args.peers.as_ref().map(generate).transpose()?,
@@ -173,10 +177,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         modes,
         weak,
         bound: ports::measure(&setting.root)?,
-        bars: Vec::new(),
-    };
-    report.bars = bars::all(&report);
-    Ok(report)
+    }))
 }
 
 /// What the peers in Python are told.

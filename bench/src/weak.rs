@@ -5,7 +5,8 @@ use rayon::ThreadPool;
 use serde::Serialize;
 
 use crate::moments;
-use crate::monte_carlo::{DT, Flight, STATES, experiment, fly};
+use crate::monte_carlo::problem::{DT, Flight, STATES};
+use crate::monte_carlo::{experiment, fly};
 use crate::race::{Finish, Runner, race};
 use crate::table::Table;
 use crate::threads::pool;
