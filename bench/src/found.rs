@@ -6,6 +6,7 @@ use crate::agreement::Agreement;
 use crate::candidates::LANES;
 use crate::compilation::Compilation;
 use crate::generation::Generation;
+use crate::interval::Interval;
 use crate::machine::Machine;
 use crate::modes::Modes;
 use crate::monte_carlo::MonteCarlo;
@@ -37,6 +38,8 @@ pub(crate) struct Found {
     pub(crate) monte_carlo: MonteCarlo,
     /// With peers alone.
     pub(crate) processes: Option<Vec<Process>>,
+    /// With peers alone.
+    pub(crate) interval: Option<Interval>,
     pub(crate) modes: Modes,
     /// With peers alone: it takes minutes.
     pub(crate) weak: Option<Weak>,

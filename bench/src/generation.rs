@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::commands;
 use crate::rounds::Spread;
 
-const RUNS: u32 = 7;
+const RUNS: u32 = 5;
 
 /// Seconds of `generate` on all tables, into an empty folder.
 #[derive(Serialize)]

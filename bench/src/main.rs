@@ -11,6 +11,7 @@ mod ensembles;
 mod found;
 mod generation;
 mod interpreted;
+mod interval;
 mod kernel;
 mod lanes;
 mod layout;
@@ -75,7 +76,7 @@ struct Args {
 /// Random points of the box of validity.
 const POINTS: usize = 1000;
 /// Rounds of kernels, of steppers and solvers, and of ensembles: with peers and without.
-const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 11.0], [200.0, 5.0, 5.0]];
+const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 7.0], [200.0, 5.0, 5.0]];
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
@@ -148,6 +149,9 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     let modes = modes::measure(ensembles, arrays.as_ref(), races)?;
     let process = |program: &PathBuf| process::measure(setting, program, &problem());
     let processes = args.peers.as_ref().map(process).transpose()?;
+    let interval =
+        |program: &PathBuf| interval::measure(setting, program, ensembles, races.div_ceil(2));
+    let interval = args.peers.as_ref().map(interval).transpose()?;
     let weak = setting.peers.then(|| weak::measure(races)).transpose()?;
     let groups = [
         ("RK4 of DCOM", &trajectories.finishes),
@@ -169,6 +173,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         trajectories,
         monte_carlo,
         processes,
+        interval,
         modes,
         weak,
         bound: ports::measure(&setting.root)?,

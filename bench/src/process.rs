@@ -17,7 +17,7 @@ use crate::table::Table;
 /// Threads of all.
 const THREADS: usize = 2;
 /// Runs of each, taken in turns.
-const RUNS: usize = 5;
+const RUNS: usize = 3;
 
 /// Seconds of a process.
 #[derive(Serialize)]

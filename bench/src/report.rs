@@ -8,6 +8,7 @@ use crate::bars::{self, Bar};
 use crate::compilation;
 use crate::found::Found;
 use crate::generation::Generation;
+use crate::interval::Interval;
 use crate::operations::Operations;
 use crate::picture;
 use crate::process;
@@ -84,6 +85,7 @@ impl Report {
         ];
         tables.extend(self.found.monte_carlo.tables());
         tables.extend(self.found.processes.as_deref().map(process::table));
+        tables.extend(self.found.interval.as_ref().map(Interval::table));
         tables.push(self.found.modes.table());
         tables.extend(
             self.found

@@ -116,9 +116,15 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
         fs::remove_dir_all(&folder).map_err(problem("remove", &folder))?;
     }
     println!("ahv new {NEW}");
-    let mut make = shell::cargo();
-    make.args(["run", "--quiet", "--package", "ahv-new", "--example", "new"]);
-    make.args(["--", &format!("{PLACE}/made/{NEW}")]);
+    // As `cargo test` has built it.
+    let mut cargo = shell::cargo();
+    shell::run(
+        cargo
+            .args(["build", "--example", "new"])
+            .args(shell::WORKSPACE),
+    )?;
+    let mut make = shell::program(shell::target().join("debug/examples/new"));
+    make.arg(format!("{PLACE}/made/{NEW}"));
     shell::output(make.args(["--example", NEW, "--ahv", "."]))?;
     built(&folder, &["test", "--quiet"])?;
     let own = Own::new(NEW, &folder);
