@@ -38,7 +38,7 @@ class ParameterSet:
 
 @dataclass(frozen=True)
 class Contents:
-    """What models are derived from: where it stands, the unit system, parameters in order, and the polynomial of each quantity.
+    """What models are derived from: the file, the unit system, parameters in order, the polynomial of each quantity.
 
     `emitted` are the groups of functions that are emitted, None for all; `values` are by paths, `box` is the validity
     box with angles in rad.

@@ -140,6 +140,7 @@ class _Reader:
         schemas = {model: family.schema((model,)) for model in models}
         parameters = tuple(self.parameters.values())
         return Table(
+            self.path,
             system,
             schema,
             parameters,
@@ -147,7 +148,6 @@ class _Reader:
             emitted,
             self.entries.values,
             self.box,
-            self.path,
             name,
             models,
             file,
