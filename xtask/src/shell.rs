@@ -18,6 +18,9 @@ pub(crate) fn target() -> PathBuf {
 /// The workspace of the benchmark.
 pub(crate) const BENCH: &str = "bench/Cargo.toml";
 
+/// The workspace of the bindings of Python.
+pub(crate) const BINDINGS: &str = "crates/ahv-python/Cargo.toml";
+
 /// All features but one: a writer of Parquet takes long to build.
 pub(crate) const FEATURES: [&str; 2] = [
     "--features",
