@@ -34,7 +34,9 @@ def test_built_in_tables_have_the_numbers_that_are_compiled():
         compiled = ahv.model("sdcom", **options)
         loaded = ahv.load(table, compiled=False, progress=False).model("sdcom", **options)
         np.testing.assert_array_equal(loaded.parameters.values, compiled.parameters.values)
-        bounds = [np.array([*model.state_bounds.values(), *model.input_bounds.values()]) for model in (loaded, compiled)]
+        bounds = [
+            np.array([*model.state_bounds.values(), *model.input_bounds.values()]) for model in (loaded, compiled)
+        ]
         np.testing.assert_allclose(*bounds, rtol=1e-15)
         assert (loaded.states, loaded.inputs, loaded.outputs) == (compiled.states, compiled.inputs, compiled.outputs)
         x, u = points(compiled, 25)

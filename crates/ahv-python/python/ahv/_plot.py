@@ -12,7 +12,7 @@ from ._names import Array, Names
 if TYPE_CHECKING:
     from ._linear import LinearSystem
 
-_COLOURS = ("#1f5f99", "#c2452d", "#3a7d44", "#8a5a9e")
+_COLOURS = ("#1f5f99", "#c2452d", "#3a7d44", "#8a5a9e", "#b8860b", "#3d8f8f", "#7f4f3a")
 
 
 def _readable(unit: str) -> tuple[str, float]:
