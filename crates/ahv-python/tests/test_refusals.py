@@ -67,8 +67,9 @@ def test_kinds_of_errors():
 
 
 def test_notes_are_warnings():
-    with pytest.warns(ahv.AhvWarning, match="outside its validity box"):
+    with pytest.warns(ahv.AhvWarning, match="outside its validity box") as told:
         ahv.dcom.lqr(velocity=6_990.0)
+    assert told[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ahv.dcom.lqr()

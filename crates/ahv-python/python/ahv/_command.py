@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike, fspath
@@ -51,5 +52,9 @@ def told(command: Callable[[list[str]], tuple[str, list[str]]], line: list[str])
 
 def warn(notes: Sequence[str]) -> None:
     """Warns of what a command says beside its outcome."""
+    # Of a line of the user's.
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals["__name__"].startswith("ahv."):
+        frame, level = frame.f_back, level + 1
     for note in notes:
-        warnings.warn(note, AhvWarning, stacklevel=5)
+        warnings.warn(note, AhvWarning, stacklevel=level)

@@ -17,7 +17,7 @@ from typing import Any
 
 from . import _models
 from ._command import Option, words
-from ._errors import NumericError, RequestError
+from ._errors import AhvError, RequestError
 from ._package import Package
 
 # The variable that names a folder with the sources of ahv.
@@ -191,7 +191,7 @@ def _compile(new: Path, build: _Build, say: Any) -> None:
     line = ["cargo", "build", "--profile", profile, "--quiet", "--manifest-path", str(new / "Cargo.toml")]
     done = subprocess.run(line, env=environment, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
-        raise NumericError(f"the models do not compile: {done.stderr.strip()}")
+        raise AhvError(f"the models do not compile: {done.stderr.strip()}")
     built = {"darwin": "lib_models.dylib", "win32": "_models.dll"}.get(sys.platform, "lib_models.so")
     shutil.copy(target / ("debug" if profile == "dev" else profile) / built, new / _file())
 
