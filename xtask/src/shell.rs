@@ -18,6 +18,9 @@ pub(crate) fn target() -> PathBuf {
 /// The workspace of the benchmark.
 pub(crate) const BENCH: &str = "bench/Cargo.toml";
 
+/// The workspace of the bindings of Python.
+pub(crate) const BINDINGS: &str = "crates/ahv-python/Cargo.toml";
+
 /// The packages of the main workspace but for [`STEPPERS`]. Of what they use they have the features that a stranger's `ahv` has
 /// of it, and so both are built once.
 pub(crate) const WORKSPACE: [&str; 5] = [

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::{
     audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, packages, python,
-    shell, tutorial,
+    shell, tutorial, wheel,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -16,6 +16,7 @@ const XTASK: [&str; 4] = [
     "target",
 ];
 const BENCH: [&str; 4] = ["--manifest-path", shell::BENCH, "--target-dir", "target"];
+const BINDINGS: [&str; 4] = ["--manifest-path", shell::BINDINGS, "--target-dir", "target"];
 const CONSUMER: [&str; 4] = [
     "--manifest-path",
     "tests/consumer/Cargo.toml",
@@ -38,7 +39,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 29] = [
+const STEPS: [Step; 30] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--all", "--check"], &XTASK[..2], &[])
@@ -63,6 +64,26 @@ const STEPS: [Step; 29] = [
         cargo(
             &["clippy", "--workspace", "--all-targets", "--locked"],
             &BENCH,
+            &DENY,
+        )
+    }),
+    ("format of the bindings", || {
+        cargo(
+            &["fmt", "--check"],
+            &BINDINGS[..2],
+            &["-p", "ahv-python", "-p", "ahv-extension"],
+        )
+    }),
+    ("clippy of the bindings", || {
+        cargo(
+            &[
+                "clippy",
+                "--package",
+                "ahv-python",
+                "--all-targets",
+                "--locked",
+            ],
+            &BINDINGS,
             &DENY,
         )
     }),
@@ -101,6 +122,7 @@ const STEPS: [Step; 29] = [
     ("own vehicle", || {
         own_vehicle::run().map(|()| Outcome::Passed)
     }),
+    ("wheel", || wheel::run(false).map(|()| Outcome::Passed)),
     ("packages", || {
         packages::run(false).map(|()| Outcome::Passed)
     }),
