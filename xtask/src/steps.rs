@@ -39,7 +39,7 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 30] = [
+const STEPS: [Step; 32] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
         cargo(&["fmt", "--all", "--check"], &XTASK[..2], &[])
