@@ -135,10 +135,7 @@ mod tests {
         for n in 1..9 {
             // xⁿ = 1: each state is the next one's rate.
             let next = |row: usize, column| f64::from((row + 1) % n == column);
-            assert_solved(
-                &DMatrix::from_fn(n, n, |row, column| next(row, column)),
-                1e-14,
-            );
+            assert_solved(&DMatrix::from_fn(n, n, next), 1e-14);
             let wild = |row: usize, column: usize| ((7 * row * row + 3 * column + 1) as f64).sin();
             assert_solved(&DMatrix::from_fn(n, n, wild), 1e-14);
         }
