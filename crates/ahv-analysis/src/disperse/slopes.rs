@@ -1,12 +1,11 @@
 //! How trim and roots move with parameters, to first order.
 
-use ahv_core::{GeneratedModel, Vector};
+use ahv_core::{Dual, GeneratedModel, Vector};
 use nalgebra::{Complex, DMatrix};
 
 use super::draws::Draws;
 use super::quantity::{Kind, Quantity};
 use super::{Nominal, SolutionError};
-use crate::dual::Dual;
 use crate::linearize::{LinearSystem, linearize};
 use crate::sensitivity::RootVectors;
 use crate::statistics::deviation_of;
