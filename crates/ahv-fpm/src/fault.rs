@@ -51,9 +51,9 @@ pub enum Fault {
         greatest: f64,
     },
     /// The stream that enters the engine is not supersonic.
-    #[error("inlet: the stream is at Mach {} behind the cowl shock, and must be supersonic", Shown(*.mach))]
+    #[error("inlet: the stream is at Mach {}, and must be supersonic", Shown(*.mach))]
     SubsonicInlet {
-        /// Mach number behind the cowl shock.
+        /// Mach number ahead of the cowl shock if that is the reason, else behind it.
         mach: f64,
     },
     /// A duct that is too narrow for its stream.
@@ -73,6 +73,14 @@ pub enum Fault {
         heating: f64,
         /// The ratio that chokes.
         greatest: f64,
+    },
+    /// Less than no fuel takes more heat from the stream than it has.
+    #[error("combustor: a stream of Mach {} has no total temperature of {} times its own: phi is below 0", Shown(*.mach), Shown(*.heating))]
+    Cooling {
+        /// Mach number ahead of the combustor.
+        mach: f64,
+        /// Ratio of total temperatures that is asked for.
+        heating: f64,
     },
     /// The stream leaves the engine with next to no pressure.
     #[error("nozzle: vacuum, for the stream leaves at {} of the air's pressure", Shown(*.pressure))]
@@ -106,11 +114,18 @@ impl Fault {
             (Surface::Underside, &flow.underside),
             (Surface::ElevatorLower, lower),
             (Surface::ElevatorUpper, upper),
-            (Surface::Inlet, &stream.cowl),
         ];
         let turn = outside
             .into_iter()
             .find_map(|(surface, turned)| of_turn(gamma, surface, turned));
+        if turn.is_some() {
+            return turn;
+        }
+        let ahead = stream.cowl.ahead;
+        if above(ahead, 1.0) {
+            return Some(Self::SubsonicInlet { mach: ahead });
+        }
+        let turn = of_turn(gamma, Surface::Inlet, &stream.cowl);
         if turn.is_some() {
             return turn;
         }
@@ -125,10 +140,17 @@ impl Fault {
             });
         }
         if above(stream.heat.margin, 0.0) {
+            let heating = stream.heating;
+            if heating < 1.0 {
+                return Some(Self::Cooling {
+                    mach: diffused,
+                    heating,
+                });
+            }
             let greatest = choking_ratio(gamma, diffused);
             return Some(Self::ThermalChoking {
                 mach: diffused,
-                heating: stream.heating,
+                heating,
                 greatest,
             });
         }

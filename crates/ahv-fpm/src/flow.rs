@@ -141,6 +141,7 @@ impl<R: Real> Flow<R> {
             self.underside.margin,
             self.elevator[0].margin,
             self.elevator[1].margin,
+            stream.cowl.ahead - R::ONE,
             stream.cowl.margin,
             stream.cowl.mach - R::ONE,
             stream.diffuser.margin,

@@ -11,7 +11,7 @@ pub struct HeatAddition<R> {
     pub pressure: R,
     /// Ratio of the static temperatures.
     pub temperature: R,
-    /// Below 0 the stream is choked, and the rest means nothing; 0 is sonic.
+    /// Below 0 the stream is choked, or has less heat than is taken from it, and the rest means nothing; 0 is sonic.
     pub margin: R,
 }
 
@@ -30,7 +30,7 @@ pub fn heat_addition<R: Real>(gamma: R, mach: R, total_temperature: R) -> HeatAd
         mach: behind_2.sqrt(),
         pressure,
         temperature: pressure * pressure * behind_2 / mach_2,
-        margin,
+        margin: margin.min(R::ONE - gamma * behind),
     }
 }
 

@@ -89,19 +89,20 @@ fn both_ways<R: Real>(gamma: R, mach: R, turn: R, into: R, away: R) -> [Turned<R
     let shock = oblique_shock(gamma, mach, into);
     let expansion = expansion(gamma, mach, away);
     let first_wave = R::ONE.atan2((mach * mach - R::ONE).sqrt());
-    let choose = |turn: R| {
-        let of = |away, into| turn.select(R::ZERO, away, into);
-        Turned {
-            turn,
-            ahead: mach,
-            mach: of(expansion.mach, shock.mach),
-            pressure: of(expansion.pressure, shock.pressure),
-            temperature: of(expansion.temperature, shock.temperature),
-            wave: of(first_wave, shock.angle),
-            margin: of(expansion.margin, shock.margin),
-        }
+    let choose = |turn: R, of: &dyn Fn(R, R) -> R| Turned {
+        turn,
+        ahead: mach,
+        mach: of(expansion.mach, shock.mach),
+        pressure: of(expansion.pressure, shock.pressure),
+        temperature: of(expansion.temperature, shock.temperature),
+        wave: of(first_wave, shock.angle),
+        margin: of(expansion.margin, shock.margin),
     };
-    [choose(turn), choose(-turn)]
+    // Without a turn the two agree in value and slope, but the sizes of the turn have each a sign of its own.
+    [
+        choose(turn, &|away, into| turn.select(R::ZERO, away, into)),
+        choose(-turn, &|away, into| turn.select(R::ZERO, into, away)),
+    ]
 }
 
 /// Force and moment of a surface, per foot of width.
