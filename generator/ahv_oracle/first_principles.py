@@ -4,7 +4,8 @@ Shares no formula with `ahv-fpm` but those of the model itself (docs/first-princ
 θ-β-M relation, expansions of the Prandtl-Meyer function, heat and areas of their tables' functions.
 Loads are integrals along the surfaces; mode shapes are normalised by integrals.
 
-Line 1 of the vectors is a comment, line 2 names the columns.
+Line 1 of the vectors is a comment, line 2 names the columns; the last row is the trim at velocity and
+altitude of Table 2.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import quad
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq, minimize_scalar, root
 
 SEED = 20261130
 POINTS = 60
@@ -60,6 +61,7 @@ def first_principles_lines() -> Iterator[str]:
     points = [TRIM]
     while len(points) < POINTS:
         points.append({name: draw.uniform(*bounds) for name, bounds in BOX.items()})
+    points.append(vehicle.steady(TRIM))
     for point in points:
         values = [point[name] for name in (*STATES, *INPUTS)]
         yield ",".join(repr(float(it)) for it in (*values, *vehicle.forces(point)))
@@ -239,6 +241,34 @@ class Vehicle:
         loads.append((thrust, 0.0, p["z_e"] * thrust))
         generalized = self._generalized(gauge, on_ramp, entry[1], point["delta_e"])
         return [float(it) for load in loads for it in load] + generalized
+
+    def steady(self, start: dict[str, float]) -> dict[str, float]:
+        """Return the trim of level flight over a flat Earth at the velocity and altitude of a point."""
+        p = self.p
+        sought = ("alpha", "phi", "delta_e", "eta_1", "eta_2")
+        stiffness = []
+        for length, mass, bending in (
+            (p["x_cm"], p["mu_f"], p["EI_f"]),
+            (self.length - p["x_cm"], p["mu_a"], p["EI_a"]),
+        ):
+            stiffness.append(CLAMPED_ROOT**4 * bending / mass / length**4)
+        weight = p["m"] * p["g"]
+
+        def left(values: list[float]) -> list[float]:
+            point = start | dict(zip(sought, values, strict=True))
+            *loads, first, second = self.forces(point)
+            axial, normal, moment = (sum(loads[part::3]) for part in range(3))
+            alpha = point["alpha"]
+            return [
+                (axial * cos(alpha) - normal * sin(alpha)) / weight,
+                (normal * cos(alpha) + axial * sin(alpha)) / weight - 1,
+                moment / weight / p["x_cm"],
+                (first - stiffness[0] * point["eta_1"]) / stiffness[0],
+                (second - stiffness[1] * point["eta_2"]) / stiffness[1],
+            ]
+
+        found = root(left, [start[name] for name in sought], tol=1e-13)
+        return start | dict(zip(sought, (float(it) for it in found.x), strict=True))
 
     def _surface(
         self,

@@ -43,8 +43,8 @@ pub(crate) struct Arguments {
 ///
 /// # Errors
 ///
-/// [`Failure::Request`] for bad input or a file that cannot be written, [`Failure::Numeric`] if there is no trim, or the model has no
-/// forces at the point.
+/// [`Failure::Request`] for bad input, a given state without forces, or a file that cannot be written; [`Failure::Numeric`] if there
+/// is no trim.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let vehicle = arguments.vehicle.vehicle()?;
     let (_, point) = arguments.condition.point(&vehicle, &arguments.state)?;
@@ -55,7 +55,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (state, input) = &point;
     let fault = vehicle.model.fault(&vehicle.parameters, state, input);
     if let Some(fault) = fault {
-        return Err(Failure::Numeric(format!("{}: {fault}", vehicle.name())));
+        let message = format!("{}: {fault}", vehicle.name());
+        return Err(match arguments.state.is_empty() {
+            true => Failure::Numeric(message),
+            false => Failure::Request(format!("--state: {message}")),
+        });
     }
     let breakdown = Breakdown::new(&vehicle, &point);
     let written = folder.map_or(Ok(()), |folder| breakdown.csv(&folder.join("forces.csv")));
@@ -115,6 +119,10 @@ impl<'a> Breakdown<'a> {
         let mut forces = Vec::new();
         let mut parts: Vec<(String, Vec<f64>)> = Vec::new();
         for &force in names {
+            if names.iter().any(|other| part(force, other).is_some()) {
+                // It is a part itself.
+                continue;
+            }
             let found: Vec<&str> = names.iter().filter_map(|name| part(name, force)).collect();
             if found.is_empty() {
                 continue;

@@ -15,11 +15,11 @@ pub struct AreaChange<R> {
     pub margin: R,
 }
 
-/// What counts as sonic: there Newton's steps have no slope.
+/// What counts as sonic: there a step has no slope.
 const LEAST: f64 = 1e-12;
 
-/// Newton's steps from a start that is within 0.6 of ln M: to rounding.
-const STEPS: usize = 5;
+/// Halley's steps from a start that is within 0.6 of ln M: to rounding.
+const STEPS: usize = 3;
 
 /// The logarithm of A/A* at a Mach number: NACA report 1135, (80).
 pub fn log_area_ratio<R: Real>(gamma: R, mach: R) -> R {
@@ -34,7 +34,7 @@ pub fn area_change<R: Real>(gamma: R, mach: R, ratio: R) -> AreaChange<R> {
     let exponent = up / (gamma - R::ONE);
     let wanted = log_area_ratio(gamma, mach) + ratio.ln();
     let aim = wanted.max(R::from_f64(LEAST));
-    // u = ln M. Both starts are above the root, one nearer at M = 1 and one far from it, and the function is convex.
+    // u = ln M. One start is near at M = 1 and one far from it; both are above the root.
     let near = (up * aim).sqrt();
     let far = (aim - exponent * (down / up).ln()) / (R::TWO * exponent - R::ONE);
     let mut u = near.min(far);
@@ -42,13 +42,16 @@ pub fn area_change<R: Real>(gamma: R, mach: R, ratio: R) -> AreaChange<R> {
         let mach_2 = (u + u).exp();
         let stagnation = R::ONE + down * mach_2;
         let error = exponent * (stagnation / up).ln() - u - aim;
-        u = u - error * stagnation / (mach_2 - R::ONE);
+        let step = error * stagnation / (mach_2 - R::ONE);
+        // Half the second derivative over the first.
+        let bend = mach_2 * up / (stagnation * (mach_2 - R::ONE));
+        u = u - step / (R::ONE - step * bend);
     }
     let mach_2 = (u + u).exp();
     let temperature = (R::ONE + down * mach * mach) / (R::ONE + down * mach_2);
     AreaChange {
         mach: u.exp(),
-        pressure: temperature.powr(gamma / (gamma - R::ONE)),
+        pressure: (gamma / (gamma - R::ONE) * temperature.ln()).exp(),
         temperature,
         margin: wanted,
     }

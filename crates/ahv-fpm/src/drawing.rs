@@ -59,7 +59,7 @@ pub fn drawing(
         )
         .dashed(),
     );
-    layers.extend(labels(model, flow, &shape));
+    layers.extend(labels(flow, &shape));
     let height = f64::from(SIZE.1) / f64::from(SIZE.0) * ROOM * length;
     let panel = Panel {
         title: String::new(),
@@ -125,7 +125,7 @@ impl Shape {
     /// The shock that the cowl lip sends into the inlet, up to the body.
     fn cowl_wave(&self, cowl: &Turned<f64>, height: f64, slope: f64) -> Layer {
         // The flow ahead comes down along the forebody.
-        let rise = (cowl.wave - slope).tan();
+        let rise = (cowl.wave() - slope).tan();
         let reach = (height / rise).min(self.ramp.0 - self.lip.0);
         let end = (self.lip.0 + reach, self.lip.1 + reach * rise);
         Layer::new(kind(cowl), colour(cowl), Mark::Line(vec![self.lip, end]))
@@ -152,92 +152,78 @@ fn colour(flow: &Turned<f64>) -> Colour {
 fn wave(flow: &Turned<f64>, alpha: f64, (x, y): Point, below: bool, reach: f64) -> Layer {
     // The air comes from below by the angle of attack.
     let slope = if below {
-        (alpha - flow.wave).tan()
+        (alpha - flow.wave()).tan()
     } else {
-        (alpha + flow.wave).tan()
+        (alpha + flow.wave()).tan()
     };
     let end = (x + reach, y + slope * reach);
     Layer::new(kind(flow), colour(flow), Mark::Line(vec![(x, y), end]))
 }
 
 /// Turns, Mach numbers and pressures beside what they are of.
-fn labels(model: &Model<f64>, flow: &Flow<f64>, shape: &Shape) -> Vec<Layer> {
-    let p = &model.parameters;
+fn labels(flow: &Flow<f64>, shape: &Shape) -> Vec<Layer> {
     let stream = &flow.stream;
     let length = shape.length;
-    let turned = |name: &str, flow: &Turned<f64>| {
+    let of = |name: &str, flow: &Turned<f64>, over: &str| {
         format!(
-            "{name}: turn {:.2}°, Mach {:.3}, p/p∞ {:.3}",
+            "{name}: turn {:.2}°, Mach {:.3}, p/{over} {:.3}",
             flow.turn.to_degrees(),
             flow.mach,
             flow.pressure
         )
     };
+    let turned = |name: &str, flow: &Turned<f64>| of(name, flow, "p∞");
     let [lower, upper] = &flow.elevator;
-    let inside =
-        stream.heat.pressure * stream.diffuser.pressure * stream.cowl.pressure * flow.bow.pressure;
+    let inside = stream.heat.pressure * stream.diffuser.pressure * stream.cowl.pressure;
+    let air = format!(
+        "air: Mach {:.3}, {:.2} lb/ft²",
+        flow.mach, flow.air.pressure
+    );
+    let captured = format!(
+        "mass flow {:.3} slug/(s ft), {}",
+        stream.mass_flow,
+        spilled(stream.capture)
+    );
+    let combustor = format!(
+        "combustor: Mach {:.3}, p/p∞ {:.2}",
+        stream.heat.mach,
+        inside * flow.bow.pressure
+    );
+    let nozzle = format!(
+        "nozzle: Mach {:.3}, p/p∞ {:.3}, {:.0} ft/s",
+        stream.nozzle.mach, stream.exit_pressure, stream.exit_velocity
+    );
+    let above = (0.1 * length, shape.tail.1 + 0.12 * length);
     let low = shape.lip.1 - 0.12 * length;
-    let texts = [
+    let columns = [
+        (above, vec![air, turned("upper surface", &flow.upper)]),
         (
-            0.1 * length,
-            shape.tail.1 + 0.12 * length,
-            format!(
-                "air: Mach {:.3}, {:.2} lb/ft²",
-                flow.mach, flow.air.pressure
-            ),
+            (-0.1 * length, low),
+            vec![
+                turned("forebody", &flow.bow),
+                of("cowl", &stream.cowl, "p of the forebody"),
+                captured,
+                combustor,
+                nozzle,
+            ],
         ),
         (
-            0.1 * length,
-            shape.tail.1 + 0.12 * length - LINE * length,
-            turned("upper surface", &flow.upper),
-        ),
-        (-0.1 * length, low, turned("forebody", &flow.bow)),
-        (
-            -0.1 * length,
-            low - LINE * length,
-            format!("inlet: {}", turned("cowl", &stream.cowl)),
-        ),
-        (
-            -0.1 * length,
-            low - 2.0 * LINE * length,
-            format!(
-                "mass flow {:.3} slug/(s ft), {}",
-                stream.mass_flow,
-                spilled(stream.capture)
-            ),
-        ),
-        (
-            -0.1 * length,
-            low - 3.0 * LINE * length,
-            format!("combustor: Mach {:.3}, p/p∞ {inside:.2}", stream.heat.mach),
-        ),
-        (
-            -0.1 * length,
-            low - 4.0 * LINE * length,
-            format!(
-                "nozzle: Mach {:.3}, p/p∞ {:.3}, {:.0} ft/s",
-                stream.nozzle.mach, stream.exit_pressure, stream.exit_velocity
-            ),
-        ),
-        (
-            -0.1 * length,
-            low - 5.0 * LINE * length,
-            turned("engine underside", &flow.underside),
-        ),
-        (
-            p.x_cm + 0.12 * length,
-            low - 6.5 * LINE * length,
-            turned("elevator, lower face", lower),
-        ),
-        (
-            p.x_cm + 0.12 * length,
-            low - 7.5 * LINE * length,
-            turned("elevator, upper face", upper),
+            (0.6 * length, low),
+            vec![
+                turned("engine underside", &flow.underside),
+                turned("elevator, lower face", lower),
+                turned("elevator, upper face", upper),
+            ],
         ),
     ];
-    texts
-        .map(|(x, y, text)| Layer::new("", Colour::Black, Mark::Label { at: (x, y), text }))
-        .into()
+    let lines = columns.into_iter().flat_map(|((x, y), texts)| {
+        let lines = texts.into_iter().enumerate();
+        lines.map(move |(row, text)| {
+            let at = (x, y - row as f64 * LINE * length);
+            Layer::new("", Colour::Black, Mark::Label { at, text })
+        })
+    });
+    lines.collect()
 }
 
 /// Whether the bow shock passes the lip outside.

@@ -122,7 +122,7 @@ impl Fault {
             return turn;
         }
         let ahead = stream.cowl.ahead;
-        if above(ahead, 1.0) {
+        if misses(ahead, 1.0) {
             return Some(Self::SubsonicInlet { mach: ahead });
         }
         let turn = of_turn(gamma, Surface::Inlet, &stream.cowl);
@@ -130,16 +130,16 @@ impl Fault {
             return turn;
         }
         let (mach, diffused, burnt) = (stream.cowl.mach, stream.diffuser.mach, stream.heat.mach);
-        if above(mach, 1.0) {
+        if misses(mach, 1.0) {
             return Some(Self::SubsonicInlet { mach });
         }
-        if above(stream.diffuser.margin, 0.0) {
+        if misses(stream.diffuser.margin, 0.0) {
             return Some(Self::ChokedDuct {
                 surface: Surface::Inlet,
                 mach,
             });
         }
-        if above(stream.heat.margin, 0.0) {
+        if misses(stream.heat.margin, 0.0) {
             let heating = stream.heating;
             if heating < 1.0 {
                 return Some(Self::Cooling {
@@ -154,19 +154,19 @@ impl Fault {
                 greatest,
             });
         }
-        if above(stream.nozzle.margin, 0.0) {
+        if misses(stream.nozzle.margin, 0.0) {
             return Some(Self::ChokedDuct {
                 surface: Surface::Nozzle,
                 mach: burnt,
             });
         }
-        if above(stream.exit_pressure, LEAST_EXIT_PRESSURE) {
+        if misses(stream.exit_pressure, LEAST_EXIT_PRESSURE) {
             return Some(Self::VacuumAtNozzle {
                 pressure: stream.exit_pressure,
             });
         }
         let left = model.structure.inertia;
-        if above(left, 0.0) {
+        if misses(left, 0.0) {
             return Some(Self::Inertia { left });
         }
         let total = flow.total();
@@ -190,8 +190,8 @@ impl Fault {
 }
 
 /// Whether a value misses what it must be above; NaN does.
-fn above(value: f64, bound: f64) -> bool {
-    !(value > bound)
+fn misses(value: f64, bound: f64) -> bool {
+    value <= bound || value.is_nan()
 }
 
 fn of_turn(gamma: f64, surface: Surface, flow: &Turned<f64>) -> Option<Fault> {

@@ -11,10 +11,17 @@ pub struct Shock<R> {
     pub pressure: R,
     /// Ratio of the static temperatures.
     pub temperature: R,
-    /// Angle between the shock and the flow ahead, rad.
-    pub angle: R,
+    /// Cotangent of the angle between the shock and the flow ahead.
+    pub cotangent: R,
     /// Below 0 the shock is detached, and the rest means nothing; 1 is a Mach wave.
     pub margin: R,
+}
+
+impl<R: Real> Shock<R> {
+    /// Angle between the shock and the flow ahead, rad.
+    pub fn angle(&self) -> R {
+        R::ONE.atan2(self.cotangent)
+    }
 }
 
 /// The weak oblique shock that turns a flow of Mach number `mach` > 1 by `turn`, in rad, of 0 or above.
@@ -51,7 +58,7 @@ pub fn oblique_shock<R: Real>(gamma: R, mach: R, turn: R) -> Shock<R> {
         mach: ((stagnation / temperature - R::ONE) / down).sqrt(),
         pressure,
         temperature,
-        angle: R::ONE.atan2(w),
+        cotangent: w,
         margin: discriminant / cube,
     }
 }

@@ -67,10 +67,17 @@ pub struct Turned<R> {
     pub pressure: R,
     /// Ratio of the static temperatures.
     pub temperature: R,
-    /// Angle between the shock, or the first wave of the expansion, and the flow ahead, rad.
-    pub wave: R,
+    /// Cotangent of the angle between the shock, or the first wave of the expansion, and the flow ahead.
+    pub cotangent: R,
     /// That of the shock or expansion: below 0 there is none.
     pub margin: R,
+}
+
+impl<R: Real> Turned<R> {
+    /// Angle between the shock, or the first wave of the expansion, and the flow ahead, rad.
+    pub fn wave(&self) -> R {
+        R::ONE.atan2(self.cotangent)
+    }
 }
 
 /// A flow of Mach number `mach` > 1 that a wall turns by `turn`, rad: by a shock if into the flow, else by an expansion.
@@ -88,14 +95,14 @@ pub fn plate<R: Real>(gamma: R, mach: R, incidence: R) -> [Turned<R>; 2] {
 fn both_ways<R: Real>(gamma: R, mach: R, turn: R, into: R, away: R) -> [Turned<R>; 2] {
     let shock = oblique_shock(gamma, mach, into);
     let expansion = expansion(gamma, mach, away);
-    let first_wave = R::ONE.atan2((mach * mach - R::ONE).sqrt());
+    let first_wave = (mach * mach - R::ONE).sqrt();
     let choose = |turn: R, of: &dyn Fn(R, R) -> R| Turned {
         turn,
         ahead: mach,
         mach: of(expansion.mach, shock.mach),
         pressure: of(expansion.pressure, shock.pressure),
         temperature: of(expansion.temperature, shock.temperature),
-        wave: of(first_wave, shock.angle),
+        cotangent: of(first_wave, shock.cotangent),
         margin: of(expansion.margin, shock.margin),
     };
     // Without a turn the two agree in value and slope, but the sizes of the turn have each a sign of its own.

@@ -45,35 +45,40 @@ fn the_check_point_has_the_flow_that_was_checked() {
     assert!(stream.capture > 1.0, "the bow shock spills");
 }
 
+/// The points of the oracle with their loads.
+fn vectors() -> Vec<(State<f64>, Input<f64>, Vec<f64>)> {
+    let row = |line: &str| {
+        let mut numbers = line.split(',').map(|it| it.parse().expect("a number"));
+        let mut next = || numbers.next().expect("a column");
+        let x = State {
+            velocity: next(),
+            altitude: next(),
+            alpha: next(),
+            eta_1: next(),
+            eta_2: next(),
+            ..State::from_array([0.0; 9])
+        };
+        let u = Input {
+            phi: next(),
+            delta_e: next(),
+        };
+        (x, u, numbers.collect())
+    };
+    VECTORS.lines().skip(2).map(row).collect()
+}
+
 #[test]
 fn loads_are_those_of_the_oracle() {
     let model = Model::new(&NOMINAL);
-    let mut seen = 0;
-    for line in VECTORS.lines().skip(2) {
-        let numbers: Vec<f64> = line
-            .split(',')
-            .map(|it| it.parse().expect("a number"))
-            .collect();
-        let [velocity, altitude, alpha, eta_1, eta_2, phi, delta_e] = numbers[..7] else {
-            panic!("{line}")
-        };
-        let x = State {
-            velocity,
-            altitude,
-            alpha,
-            eta_1,
-            eta_2,
-            ..State::from_array([0.0; 9])
-        };
-        let flow = model
-            .forces_beyond(&x, &Input { phi, delta_e })
-            .expect("a flow");
+    let vectors = vectors();
+    for (x, u, wanted) in &vectors {
+        let flow = model.forces_beyond(x, u).expect("a flow");
         let loads = flow
             .loads
             .iter()
             .flat_map(|it| [it.axial, it.normal, it.moment]);
         let found = loads.chain(flow.generalized);
-        for (index, (found, wanted)) in found.zip(&numbers[7..]).enumerate() {
+        for (index, (found, wanted)) in found.zip(wanted).enumerate() {
             let size = wanted.abs().max(if index > 23 { 100.0 } else { 1000.0 });
             // The ramp's quadrature has twelve nodes, and its pressure falls by up to ten.
             let room = if (9..12).contains(&index) || index == 25 {
@@ -83,12 +88,23 @@ fn loads_are_those_of_the_oracle() {
             };
             assert!(
                 (found - wanted).abs() < room * size,
-                "{line}\n{index}: {found} {wanted}"
+                "{x:?} {u:?}\n{index}: {found} {wanted}"
             );
         }
-        seen += 1;
     }
-    assert!(seen >= 50);
+    assert!(vectors.len() > 50);
+}
+
+/// The oracle's trim is one: no rate is left, but that of the altitude, which is level.
+#[test]
+fn the_trim_is_that_of_the_oracle() {
+    let (x, u, _) = vectors().pop().expect("the last row");
+    let rates = Model::new(&NOMINAL).drift(&x, &u);
+    let scale = [10.0, 1.0, 1e-3, 1e-3, 1.0, 1.0, 100.0, 1.0, 100.0];
+    for (rate, scale) in rates.to_array().into_iter().zip(scale) {
+        assert!(rate.abs() < 1e-8 * scale, "{rates:?}");
+    }
+    assert!(x.alpha > 0.03 && u.phi > 0.1);
 }
 
 #[test]

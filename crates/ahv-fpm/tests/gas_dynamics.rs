@@ -84,9 +84,9 @@ fn shocks_have_the_printed_digits() {
             let density = 6.0 * normal * normal / (normal * normal + 5.0);
             let turn = angle - (angle.tan() / density).atan();
             let found = oblique_shock(GAMMA, ahead, turn);
-            if (found.angle - angle).abs() > 1e-9 {
+            if (found.angle() - angle).abs() > 1e-9 {
                 // That angle is the strong shock's.
-                assert!(found.angle < angle);
+                assert!(found.angle() < angle);
                 continue;
             }
             check(&row, "p2_p1", found.pressure);
@@ -118,7 +118,7 @@ fn relations_are_those_of_the_oracle() {
         let found = match cells[0] {
             "shock" => {
                 let it = oblique_shock(GAMMA, mach, argument);
-                vec![it.mach, it.pressure, it.temperature, it.angle]
+                vec![it.mach, it.pressure, it.temperature, it.angle()]
             }
             "expansion" => {
                 let it = expansion(GAMMA, mach, argument);
@@ -163,7 +163,7 @@ fn weak_waves_are_mach_waves() {
                 relative.abs() < 40.0 * mach * turn + 1e-6,
                 "{mach} {turn} {relative}"
             );
-            assert!((shock.angle - (1.0 / mach).asin()).abs() < 10.0 * turn);
+            assert!((shock.angle() - (1.0 / mach).asin()).abs() < 10.0 * turn);
             let fan = expansion(GAMMA, mach, turn);
             assert!((shock.pressure * fan.pressure - 1.0).abs() < 1e3 * turn * turn + 1e-13);
         }

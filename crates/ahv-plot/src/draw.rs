@@ -236,7 +236,7 @@ fn draw_layer(
         Mark::Cells(cells) => draw_cells(cells, x, y, chart)?,
         Mark::Label { at, text } => {
             let font = ("sans-serif", FONT * SUBPIXELS).into_font().color(&colour);
-            let style = TextStyle::from(font).pos(Pos::new(HPos::Left, VPos::Center));
+            let style = font.pos(Pos::new(HPos::Left, VPos::Center));
             for place in scaled(&[*at]) {
                 page.draw(&Text::new(
                     text.clone(),
