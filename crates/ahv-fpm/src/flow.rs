@@ -58,7 +58,7 @@ impl<R: Real> Flow<R> {
             alpha: x.alpha,
             phi: u.phi,
         };
-        let stream = Stream::new(p, &air, flight, &bow, slope);
+        let stream = Stream::new(model, &air, flight, &bow, slope);
         let mut flow = Self {
             air,
             mach,

@@ -2,6 +2,7 @@
 
 use ahv_core::{Bounds, DifferentiableModel, Dual, Pattern, Real, Vector, first_outside};
 
+use crate::area::Duct;
 use crate::atmosphere::Atmosphere;
 use crate::structure::{Beam, Structure};
 use crate::table::validity;
@@ -68,6 +69,8 @@ pub struct Model<R> {
     /// Its beams and their modes.
     pub structure: Structure<R>,
     pub(crate) atmosphere: Atmosphere<R>,
+    pub(crate) diffuser: Duct<R>,
+    pub(crate) nozzle: Duct<R>,
 }
 
 impl<R: Real> Model<R> {
@@ -77,6 +80,8 @@ impl<R: Real> Model<R> {
             parameters: *parameters,
             structure: Structure::new(parameters),
             atmosphere: Atmosphere::new(parameters),
+            diffuser: Duct::new(parameters.kappa, parameters.a_d),
+            nozzle: Duct::new(parameters.kappa, parameters.a_n),
         }
     }
 
@@ -157,6 +162,8 @@ impl<R> Model<R> {
             parameters: self.parameters.map_ref(&mut f),
             structure: self.structure.map_ref(&mut f),
             atmosphere: self.atmosphere.map_ref(&mut f),
+            diffuser: self.diffuser.map_ref(&mut f),
+            nozzle: self.nozzle.map_ref(&mut f),
         }
     }
 }

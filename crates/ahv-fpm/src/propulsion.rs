@@ -2,8 +2,8 @@
 
 use ahv_core::Real;
 
-use crate::Parameters;
-use crate::area::{AreaChange, area_change};
+use crate::Model;
+use crate::area::AreaChange;
 use crate::atmosphere::Air;
 use crate::rayleigh::{HeatAddition, heat_addition};
 use crate::surfaces::{Turned, turned};
@@ -45,12 +45,13 @@ impl<R: Real> Stream<R> {
     /// Behind the bow shock the inlet takes ρ₁V₁ times its height across that flow; a shock inside the lip leaves it only what lies
     /// between nose and lip in the air ahead. Where the shock meets the lip both are equal.
     pub(crate) fn new(
-        p: &Parameters<R>,
+        model: &Model<R>,
         air: &Air<R>,
         flight: Flight<R>,
         bow: &Turned<R>,
         slope: R,
     ) -> Self {
+        let p = &model.parameters;
         let gamma = p.kappa;
         let down = (gamma - R::ONE) * R::HALF;
         let density = air.density * bow.pressure / bow.temperature;
@@ -64,14 +65,14 @@ impl<R: Real> Stream<R> {
         let warm = air.temperature * bow.temperature * cowl.temperature;
         let velocity = cowl.mach * air.sound * (bow.temperature * cowl.temperature).sqrt();
         let height = mass_flow / (density * cowl.pressure / cowl.temperature * velocity);
-        let diffuser = area_change(gamma, cowl.mach, p.a_d);
+        let diffuser = model.diffuser.change(cowl.mach);
         // Energy of a unit of air, and of the air and fuel that it becomes.
         let total = warm * (R::ONE + down * cowl.mach * cowl.mach);
         let specific_heat = gamma * p.r_air / (gamma - R::ONE);
         let fuel = p.f_st * flight.phi;
         let heating = (R::ONE + p.eta_c * fuel * p.h_f / (specific_heat * total)) / (R::ONE + fuel);
         let heat = heat_addition(gamma, diffuser.mach, heating);
-        let nozzle = area_change(gamma, heat.mach, p.a_n);
+        let nozzle = model.nozzle.change(heat.mach);
         let exit_total = total * heating;
         let exit = exit_total / (R::ONE + down * nozzle.mach * nozzle.mach);
         let compression = bow.pressure * cowl.pressure * diffuser.pressure;

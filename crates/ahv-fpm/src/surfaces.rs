@@ -78,38 +78,83 @@ impl<R: Real> Turned<R> {
     pub fn wave(&self) -> R {
         R::ONE.atan2(self.cotangent)
     }
+
+    /// This flow where `turn` is below 0, else the other.
+    fn where_below(self, turn: R, other: Self) -> Self {
+        let of = |below, otherwise| turn.select(R::ZERO, below, otherwise);
+        Self {
+            turn: self.turn,
+            ahead: self.ahead,
+            mach: of(self.mach, other.mach),
+            pressure: of(self.pressure, other.pressure),
+            temperature: of(self.temperature, other.temperature),
+            cotangent: of(self.cotangent, other.cotangent),
+            margin: of(self.margin, other.margin),
+        }
+    }
 }
 
 /// A flow of Mach number `mach` > 1 that a wall turns by `turn`, rad: by a shock if into the flow, else by an expansion.
+///
+/// Of numbers side by side that all turn to one side only that one is computed.
 pub fn turned<R: Real>(gamma: R, mach: R, turn: R) -> Turned<R> {
-    both_ways(gamma, mach, turn, turn.max(R::ZERO), (-turn).max(R::ZERO))[0]
+    let (into, away) = (turn.max(R::ZERO), (-turn).max(R::ZERO));
+    match (none_below(turn), none_below(-turn)) {
+        (true, false) => by_shock(gamma, mach, turn, into),
+        (false, true) => by_expansion(gamma, mach, turn, away),
+        _ => {
+            let shock = by_shock(gamma, mach, turn, into);
+            by_expansion(gamma, mach, turn, away).where_below(turn, shock)
+        }
+    }
 }
 
 /// The flows along the two faces of a plate at `incidence`, rad, first that which it turns by the incidence.
 pub fn plate<R: Real>(gamma: R, mach: R, incidence: R) -> [Turned<R>; 2] {
+    // Without incidence shock and expansion agree in value and slope, but each size of the turn has a sign of its own.
     let size = incidence.select(R::ZERO, -incidence, incidence);
-    both_ways(gamma, mach, incidence, size, size)
+    let shock = |turn| by_shock(gamma, mach, turn, size);
+    let expansion = |turn| by_expansion(gamma, mach, turn, size);
+    match (none_below(incidence), none_below(-incidence)) {
+        (true, false) => [shock(incidence), expansion(-incidence)],
+        (false, true) => [expansion(incidence), shock(-incidence)],
+        _ => [
+            expansion(incidence).where_below(incidence, shock(incidence)),
+            shock(-incidence).where_below(incidence, expansion(-incidence)),
+        ],
+    }
 }
 
-/// The flow turned by `turn` and that turned by −`turn`, by the shock of `into` and the expansion of `away`.
-fn both_ways<R: Real>(gamma: R, mach: R, turn: R, into: R, away: R) -> [Turned<R>; 2] {
-    let shock = oblique_shock(gamma, mach, into);
-    let expansion = expansion(gamma, mach, away);
-    let first_wave = (mach * mach - R::ONE).sqrt();
-    let choose = |turn: R, of: &dyn Fn(R, R) -> R| Turned {
+/// Whether no lane is below 0. Where numbers do not say whether they are finite, this holds for a number and its negative.
+fn none_below<R: Real>(value: R) -> bool {
+    let nothing = R::from_f64(f64::NAN);
+    value.select(R::ZERO, nothing, R::ZERO).is_finite()
+}
+
+fn by_shock<R: Real>(gamma: R, mach: R, turn: R, size: R) -> Turned<R> {
+    let shock = oblique_shock(gamma, mach, size);
+    Turned {
         turn,
         ahead: mach,
-        mach: of(expansion.mach, shock.mach),
-        pressure: of(expansion.pressure, shock.pressure),
-        temperature: of(expansion.temperature, shock.temperature),
-        cotangent: of(first_wave, shock.cotangent),
-        margin: of(expansion.margin, shock.margin),
-    };
-    // Without a turn the two agree in value and slope, but the sizes of the turn have each a sign of its own.
-    [
-        choose(turn, &|away, into| turn.select(R::ZERO, away, into)),
-        choose(-turn, &|away, into| turn.select(R::ZERO, into, away)),
-    ]
+        mach: shock.mach,
+        pressure: shock.pressure,
+        temperature: shock.temperature,
+        cotangent: shock.cotangent,
+        margin: shock.margin,
+    }
+}
+
+fn by_expansion<R: Real>(gamma: R, mach: R, turn: R, size: R) -> Turned<R> {
+    let expansion = expansion(gamma, mach, size);
+    Turned {
+        turn,
+        ahead: mach,
+        mach: expansion.mach,
+        pressure: expansion.pressure,
+        temperature: expansion.temperature,
+        cotangent: (mach * mach - R::ONE).sqrt(),
+        margin: expansion.margin,
+    }
 }
 
 /// Force and moment of a surface, per foot of width.
