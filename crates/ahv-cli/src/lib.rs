@@ -32,6 +32,7 @@ pub mod embedded;
 pub mod failure;
 mod flight_condition;
 mod flights;
+mod forces;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
@@ -90,6 +91,7 @@ enum Command {
 enum ModelCommand {
     Covariance(covariance::Arguments),
     Disperse(disperse::Arguments),
+    Forces(forces::Arguments),
     Linearize(linearize::Arguments),
     Lqr(lqr::Arguments),
     #[command(name = "montecarlo")]
@@ -201,6 +203,7 @@ impl ModelCommand {
         match self {
             Self::Covariance(arguments) => covariance::run(arguments),
             Self::Disperse(arguments) => disperse::run(arguments),
+            Self::Forces(arguments) => forces::run(arguments),
             Self::Linearize(arguments) => linearize::run(arguments),
             Self::Lqr(arguments) => lqr::run(arguments),
             Self::MonteCarlo(arguments) => monte_carlo::run(arguments),

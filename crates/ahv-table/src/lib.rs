@@ -40,7 +40,7 @@ use ahv_core::{Bounds, ChoiceOption, GeneratedModel, Table, Vector};
 
 pub use fault::Fault;
 pub use text::{Part, Text, Unreadable};
-pub use unit::{degrees, in_radians};
+pub use unit::{degrees, in_radians, in_si};
 
 /// The models of one table, which all models of a package belong to.
 #[derive(Clone, Copy, Debug, PartialEq)]

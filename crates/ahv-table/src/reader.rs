@@ -296,7 +296,7 @@ impl<'a> Reader<'a> {
             entries.value("range", &path, "`min` must be below `max`", "");
         }
         let expected = match entries.system {
-            SI => unit::in_si(interval.unit),
+            SI => unit::si_name(interval.unit),
             _ => interval.unit.to_owned(),
         };
         let path = [VALIDITY, interval.name, "unit"];

@@ -39,8 +39,14 @@ pub(crate) fn known() -> String {
     KNOWN.map(|(name, ..)| name).join(", ")
 }
 
+/// The SI unit of a unit in foot and slug, and what a value is multiplied with to be in it: `kg/m^3` for `slug/ft^3`; `None` if it
+/// is no unit.
+pub fn in_si(unit: &str) -> Option<(String, f64)> {
+    Some((si_name(unit), Unit::parse(unit)?.size))
+}
+
 /// The SI unit in the place of one in foot and slug: `kg/m^3` for `slug/ft^3`.
-pub(crate) fn in_si(mut text: &str) -> String {
+pub(crate) fn si_name(mut text: &str) -> String {
     let mut converted = String::new();
     while let Some(first) = text.chars().next() {
         let name = taken(&mut text, |c| c.is_ascii_alphabetic());
@@ -206,7 +212,7 @@ mod tests {
             ("lb*ft/rad", "N*m/rad"),
             ("1", "1"),
         ] {
-            assert_eq!(in_si(foot), si);
+            assert_eq!(si_name(foot), si);
         }
     }
 

@@ -7,6 +7,7 @@
 mod closed_loop;
 mod command;
 mod files;
+mod forces;
 mod linearize;
 mod monte_carlo;
 mod poles;
