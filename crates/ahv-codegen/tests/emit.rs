@@ -403,7 +403,7 @@ fn the_page_of_the_audit_is_that_of_an_audit() {
 fn another_schema_version_is_refused() {
     let mut irs = irs();
     let text = irs.get_mut("dcom").unwrap();
-    *text = text.replacen("\"schema_version\": 4", "\"schema_version\": 1", 1);
+    *text = text.replacen("\"schema_version\": 5", "\"schema_version\": 1", 1);
     let error = emit(&[table("dcom")], &irs, &Options::default())
         .unwrap_err()
         .to_string();

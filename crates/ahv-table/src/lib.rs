@@ -39,8 +39,9 @@ mod unit;
 use ahv_core::{Bounds, ChoiceOption, GeneratedModel, Table, Vector};
 
 pub use fault::Fault;
+pub use monomial::{Powers, powers};
 pub use text::{Part, Text, Unreadable};
-pub use unit::{degrees, in_radians};
+pub use unit::{Unit, degrees, in_radians};
 
 /// The models of one table, which all models of a package belong to.
 #[derive(Clone, Copy, Debug, PartialEq)]
