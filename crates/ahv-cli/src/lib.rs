@@ -53,6 +53,8 @@ pub mod signals;
 mod simulate;
 pub mod steps;
 mod table;
+#[cfg(feature = "generate")]
+mod tables;
 mod trim;
 mod units;
 mod vehicle;
@@ -79,6 +81,8 @@ enum Command {
     Generate(generate::Arguments),
     #[cfg(feature = "generate")]
     New(new::Arguments),
+    #[cfg(feature = "generate")]
+    Table(tables::Arguments),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -130,7 +134,7 @@ pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
     if let Some((name, matches)) = matches.subcommand()
         && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
     {
-        return listening(|| (extra.run)(matches));
+        return listening(|| (extra.run)(matches).map(|()| ExitCode::SUCCESS));
     }
     let cli = Cli::from_arg_matches_mut(&mut matches);
     match cli.unwrap_or_else(|error| error.exit()).command {
@@ -139,7 +143,9 @@ pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
         Command::Generate(arguments) => generate::run(&arguments),
         #[cfg(feature = "generate")]
         Command::New(arguments) => new::run(&arguments),
-        Command::Model(command) => listening(|| command.run()),
+        #[cfg(feature = "generate")]
+        Command::Table(arguments) => listening(|| tables::run(&arguments)),
+        Command::Model(command) => listening(|| command.run().map(|()| ExitCode::SUCCESS)),
     }
 }
 
@@ -156,14 +162,14 @@ fn answer(asked: &clap::Error) -> ExitCode {
 fn command(extra: &[ExtraCommand]) -> clap::Command {
     let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
     command.mut_subcommands(|command| match command.get_name() {
-        "generate" | "new" => command,
+        "generate" | "new" | "table" => command,
         _ => command.display_order(1),
     })
 }
 
-fn listening(run: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
+fn listening(run: impl FnOnce() -> Result<ExitCode, Failure>) -> ExitCode {
     match signals::listen().and_then(|()| run()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(failure) => failure.report(signals::exit_code()),
     }
 }

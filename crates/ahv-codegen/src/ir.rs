@@ -8,8 +8,8 @@ use crate::EmitError;
 
 mod table;
 pub use table::{
-    Choice, ChoiceOption, EntryKind, Fit, FitVariable, Parameter, ParameterSet, Replacement, Rule, Sign, Status,
-    UnitSystem, Units,
+    Choice, ChoiceOption, EntryKind, Fit, FitVariable, Parameter, ParameterSet, Replacement, Rule,
+    Sign, Status, UnitSystem, Units,
 };
 
 /// The schema that this crate reads.

@@ -19,8 +19,8 @@ use crate::tables::{Diagnostic, Tables};
 const BAD_TABLES: i32 = 2;
 
 #[derive(Deserialize)]
-struct Diagnostics {
-    diagnostics: Vec<Diagnostic>,
+pub(crate) struct Diagnostics {
+    pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
 /// The IR of each table, by the table's name; and the audit, where a table has the printed form. Those that are `known` are
@@ -86,6 +86,6 @@ pub(crate) fn failure(output: &Output, tables: &Tables) -> Failure {
     with_stderr(format!("the derivation failed ({})", output.status), output)
 }
 
-fn with_stderr(message: String, output: &Output) -> Failure {
+pub(crate) fn with_stderr(message: String, output: &Output) -> Failure {
     Failure::new(format!("{message}{}", last_lines(&output.stderr)))
 }

@@ -31,7 +31,7 @@ pub fn powers(key: &str) -> Option<Powers<'_>> {
 }
 
 /// The highest degree of a monomial: derivatives multiply its variables by others.
-pub const HIGHEST_DEGREE: u32 = 9;
+const HIGHEST_DEGREE: u32 = 9;
 
 /// Why a key is not a monomial of a fit: the rule that it breaks, what is wrong, what would be right.
 pub(crate) type Refusal = (&'static str, String, String);
@@ -44,8 +44,9 @@ pub(crate) fn powers_in<'a>(key: &'a str, fit: &Fit) -> Result<Powers<'a>, Refus
             "0" => "the key of the constant part is `1`",
             _ => "",
         };
-        let message =
-            format!("`{shown}` is not a monomial; write it like `alpha`, `alpha^2` or `phi*alpha^3`");
+        let message = format!(
+            "`{shown}` is not a monomial; write it like `alpha`, `alpha^2` or `phi*alpha^3`"
+        );
         return Err(("monomial", message, advice.to_owned()));
     };
     let known: Vec<&str> = fit.variables.iter().map(|it| it.name).collect();
@@ -53,9 +54,12 @@ pub(crate) fn powers_in<'a>(key: &'a str, fit: &Fit) -> Result<Powers<'a>, Refus
         let message = format!("`{}` is not a variable of this quantity", shortened(name));
         return Err(("monomial", message, suggestion(name, &known)));
     }
-    let degree = powers.values().fold(0, |sum: u32, it| sum.saturating_add(*it));
+    let degree = powers
+        .values()
+        .fold(0, |sum: u32, it| sum.saturating_add(*it));
     if degree > HIGHEST_DEGREE {
-        let message = format!("the degree of `{shown}` is too high; the highest is {HIGHEST_DEGREE}");
+        let message =
+            format!("the degree of `{shown}` is too high; the highest is {HIGHEST_DEGREE}");
         return Err(("monomial", message, String::new()));
     }
     let affine = powers.iter().filter(|(name, _)| fit.affine.contains(name));

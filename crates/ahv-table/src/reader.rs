@@ -192,8 +192,10 @@ impl<'a> Reader<'a> {
             match index {
                 Some(index) => self.take(index, section, key),
                 None => {
-                    let message = format!("the models have no coefficient of `{key}` in `[{section}]`");
-                    self.entries.key("needs-generation", &path, &message, GENERATE);
+                    let message =
+                        format!("the models have no coefficient of `{key}` in `[{section}]`");
+                    self.entries
+                        .key("needs-generation", &path, &message, GENERATE);
                 }
             }
         }

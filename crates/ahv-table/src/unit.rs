@@ -40,7 +40,8 @@ pub(crate) fn known() -> String {
 }
 
 /// The SI unit in the place of one in foot and slug: `kg/m^3` for `slug/ft^3`.
-pub(crate) fn in_si(mut text: &str) -> String {
+#[must_use]
+pub fn in_si(mut text: &str) -> String {
     let mut converted = String::new();
     while let Some(first) = text.chars().next() {
         let name = taken(&mut text, |c| c.is_ascii_alphabetic());
