@@ -102,9 +102,12 @@ class Graph:
         return total
 
     def _partial(self, of: Intermediate, name: str, partial: ca.SX, variable: str) -> ca.SX:
-        """The partial derivative of a quantity by another: by a name of its own where it is a sum, to be used again."""
+        """The partial derivative of a quantity by another: by a name of its own where it is a sum, to be used again.
+
+        The sine of an angle is what it is: two partial derivatives may be the same one, and neither is the other's.
+        """
         own = f"slope_of_{of.name}_in_{name}"
-        if _is_product(partial) or not _is_basic(of.name) or len(own) > _LONGEST:
+        if _is_product(partial, of_calls=True) or not _is_basic(of.name) or len(own) > _LONGEST:
             return partial
         key = (of.name, name)
         if key not in self._partials:
@@ -196,10 +199,14 @@ _LONGEST = 44
 
 
 _PRODUCT = (ca.OP_MUL, ca.OP_NEG, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV, ca.OP_POW, ca.OP_CONSTPOW)
+_SUM = (ca.OP_ADD, ca.OP_SUB)
 
 
-def _is_product(expr: ca.SX) -> bool:
-    """Whether there is neither a sum nor an elementary function in an expression."""
+def _is_product(expr: ca.SX, *, of_calls: bool = False) -> bool:
+    """Whether there is no sum in an expression, and no elementary function but, `of_calls`, of a symbol."""
     if expr.is_constant() or expr.is_symbolic():
         return True
-    return expr.op() in _PRODUCT and all(_is_product(expr.dep(i)) for i in range(expr.n_dep()))
+    parts = [expr.dep(i) for i in range(expr.n_dep())]
+    if expr.op() in _PRODUCT:
+        return all(_is_product(part, of_calls=of_calls) for part in parts)
+    return of_calls and expr.op() not in _SUM and all(part.is_symbolic() for part in parts)

@@ -27,6 +27,8 @@
 mod assignment;
 mod covariance;
 pub mod csv_file;
+#[cfg(feature = "generate")]
+mod diff;
 mod disperse;
 pub mod failure;
 mod flight_condition;
@@ -83,6 +85,8 @@ enum Command {
     New(new::Arguments),
     #[cfg(feature = "generate")]
     Table(tables::Arguments),
+    #[cfg(feature = "generate")]
+    Diff(diff::Arguments),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -145,6 +149,8 @@ pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
         Command::New(arguments) => new::run(&arguments),
         #[cfg(feature = "generate")]
         Command::Table(arguments) => listening(|| tables::run(&arguments)),
+        #[cfg(feature = "generate")]
+        Command::Diff(arguments) => listening(|| diff::run(&arguments).map(|()| ExitCode::SUCCESS)),
         Command::Model(command) => listening(|| command.run().map(|()| ExitCode::SUCCESS)),
     }
 }
@@ -162,7 +168,7 @@ fn answer(asked: &clap::Error) -> ExitCode {
 fn command(extra: &[ExtraCommand]) -> clap::Command {
     let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
     command.mut_subcommands(|command| match command.get_name() {
-        "generate" | "new" | "table" => command,
+        "diff" | "generate" | "new" | "table" => command,
         _ => command.display_order(1),
     })
 }

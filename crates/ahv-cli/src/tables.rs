@@ -173,11 +173,10 @@ impl Layout {
     fn run(&self) -> Result<ExitCode, Failure> {
         let mut code = ExitCode::SUCCESS;
         for path in &self.files {
-            let text = read(path)?;
-            let table = parsed(path, &text)?;
+            let table = parsed(path)?;
             let laid_out = ahv_review::laid_out(&table)
                 .map_err(|error| Failure::Numeric(format!("{}: {error}", path.display())))?;
-            if laid_out == text {
+            if laid_out == table.raw() {
                 continue;
             }
             if self.check {
@@ -196,7 +195,7 @@ impl Layout {
 
 impl Show {
     fn run(&self) -> Result<ExitCode, Failure> {
-        let table = parsed(&self.file, &read(&self.file)?)?;
+        let table = parsed(&self.file)?;
         let overview = Overview::new(&table, &known(&table, &self.file)?.subject);
         match &self.html {
             Some(path) => output::write(path, ahv_review::page(&overview))?,
@@ -212,21 +211,29 @@ fn read(path: &Path) -> Result<String, Failure> {
     table::text_of(path).map_err(|error| Failure::Request(format!("cannot read {shown}: {error}")))
 }
 
-fn parsed(path: &Path, text: &str) -> Result<Text, Failure> {
-    let shown = names::printable(&path.display().to_string());
-    Text::parse(text.to_owned())
-        .map_err(|unreadable| Failure::Request(unreadable.line(&shown, text)))
+/// The table at a path.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for a file that cannot be read, or is not TOML.
+pub(crate) fn parsed(path: &Path) -> Result<Text, Failure> {
+    let (shown, text) = (names::printable(&path.display().to_string()), read(path)?);
+    Text::parse(text.clone()).map_err(|unreadable| Failure::Request(unreadable.line(&shown, &text)))
 }
 
 /// What is wrong with a table, and what it may hold.
-struct Known {
-    subject: Subject,
+pub(crate) struct Known {
+    pub(crate) subject: Subject,
     faults: Vec<Finding>,
 }
 
-/// What the models of this program say of a table; where they find a fault, or are other models, what its family says. A family may
-/// make other models of other sections.
-fn known(table: &Text, path: &Path) -> Result<Known, Failure> {
+/// What the models of this program say of a table; where they find a fault, or are other models, what its family says: it may make
+/// other models of other sections.
+///
+/// # Errors
+///
+/// [`Failure::Request`] if the program does not have the models, and the family cannot be asked.
+pub(crate) fn known(table: &Text, path: &Path) -> Result<Known, Failure> {
     let compiled = compiled(table).map(|subject| Known {
         faults: ahv_review::faults(table, &subject),
         subject,

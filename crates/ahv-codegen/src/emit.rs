@@ -59,7 +59,6 @@ pub fn emit_again(
         if options.target == Target::Rust {
             // In the units that the table has, whatever those of the package.
             let schema = table_schema::schema(&document);
-            let schema = schema.map_err(|error| EmitError::Template(error.to_string()))?;
             tree.insert(format!("schema/{}.json", table.name), schema);
         }
         let values = Values::read(table, &mut document, options.units)?;

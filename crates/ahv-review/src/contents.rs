@@ -150,14 +150,17 @@ impl<'a> Contents<'a> {
 
     /// The largest magnitude of a term over the validity box; `None` if a variable of its monomial is not bounded.
     pub(crate) fn largest(&self, entry: &Number<'_>) -> Option<f64> {
+        Some(self.monomial(entry)? * entry.value.abs())
+    }
+
+    /// The same of the monomial by itself.
+    pub(crate) fn monomial(&self, entry: &Number<'_>) -> Option<f64> {
         let (fit, powers) = entry.term.as_ref()?;
-        powers
-            .iter()
-            .try_fold(entry.value.abs(), |product, (name, exponent)| {
-                let (min, max) = self.interval(fit, name)?;
-                let power = i32::try_from(*exponent).ok()?;
-                Some(product * min.abs().max(max.abs()).powi(power))
-            })
+        powers.iter().try_fold(1.0, |product, (name, exponent)| {
+            let (min, max) = self.interval(fit, name)?;
+            let power = i32::try_from(*exponent).ok()?;
+            Some(product * min.abs().max(max.abs()).powi(power))
+        })
     }
 
     /// A unit of the family in the table's system, and what turns a value of the family into one of the table.

@@ -23,6 +23,7 @@
 #![forbid(unsafe_code)]
 
 mod contents;
+mod difference;
 mod layout;
 mod lint;
 mod overview;
@@ -32,6 +33,7 @@ mod sarif;
 mod subject;
 
 pub use contents::models;
+pub use difference::{Change, Difference, QuantityChange, Side};
 pub use layout::{NotTheSame, laid_out};
 pub use lint::{Finding, LINTS, Limits, Lint, Severity, faults, lint, unreadable};
 pub use overview::Overview;

@@ -53,7 +53,6 @@ ahv_core::entries! {
 fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_t_d_s = i.dynamic_pressure
         * (p.c_t_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_t_eta_2_inv_omega_2_2 * i.c_n_2
             + p.c_t_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
@@ -92,7 +91,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
 fn parameter_jacobian_by_environment<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_d_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_d_eta_1_times_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_d_eta_2_times_inv_omega_2_2 * i.c_n_2 * i.velocity_2
@@ -156,7 +154,6 @@ fn parameter_jacobian_by_environment<R: Real>(
 fn parameter_jacobian_by_modes<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_omega_1 = i.reference_force * p.inv_omega_1 * i.eta_static_1
         * (R::TWO * p.c_d_eta_1 - i.cos_alpha * p.two_c_t_eta_1); // lb*s/ft/rad
     parameter.velocity.omega_1 = d_path_force_d_omega_1 * p.inv_m; // ft/s/rad
@@ -205,7 +202,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_t_d_canard_command = i.reference_force
         * (p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
@@ -330,13 +326,12 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.pitch_rate.c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * i.eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
 #[inline(always)]
-fn parameter_jacobian_by_c_l_c_d<R: Real>(
+fn parameter_jacobian_by_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_t_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
         * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_e = i.reference_force * d_c_t_d_c_l_delta_e; // lb*rad/ft
@@ -397,6 +392,13 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter.alpha.c_l_eta_1 = -i.turn_factor * i.eta_1;
     parameter.alpha.c_l_eta_2 = -i.turn_factor * i.eta_2;
     parameter.alpha.c_l_eta_3 = -i.turn_factor * i.eta_3;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.c_d_alpha_2 = -i.reference_force * i.incidence_2 * p.inv_m;
     parameter.velocity.c_d_alpha = -i.reference_force * i.incidence * p.inv_m;
     parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
@@ -415,7 +417,6 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let cos_alpha_c_t_eta_1_minus_c_d_eta_1 = s.cos_alpha_c_t_eta_1 - p.c_d_eta_1;
     let d_path_force_d_c_n_1_alpha_2 = q.reference_force_2 * p.inv_omega_1_2 * i.incidence_2
         * cos_alpha_c_t_eta_1_minus_c_d_eta_1; // lb*slug^0.5*rad^2/ft^1.5
@@ -476,7 +477,6 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let cos_alpha_c_t_eta_2_minus_c_d_eta_2 = s.cos_alpha_c_t_eta_2 - p.c_d_eta_2;
     let d_path_force_d_c_n_2_alpha_2 = q.reference_force_2 * p.inv_omega_2_2 * i.incidence_2
         * cos_alpha_c_t_eta_2_minus_c_d_eta_2; // lb*slug^0.5*rad^2/ft^1.5
@@ -531,13 +531,12 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     parameter.alpha.c_n_2_0 = -parameter.gamma.c_n_2_0;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m, noise.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3.
 #[inline(always)]
-fn parameter_jacobian_by_c_n_3_to_noise<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, q: &Sensitivities<R>,
+fn parameter_jacobian_by_c_n_3<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let cos_alpha_c_t_eta_3_minus_c_d_eta_3 = s.cos_alpha_c_t_eta_3 - p.c_d_eta_3;
     let d_path_force_d_c_n_3_alpha_2 = q.reference_force_2 * p.inv_omega_3_2 * i.incidence_2
         * cos_alpha_c_t_eta_3_minus_c_d_eta_3; // lb*slug^0.5*rad^2/ft^1.5
@@ -590,6 +589,13 @@ fn parameter_jacobian_by_c_n_3_to_noise<R: Real>(
     parameter.alpha.c_n_3_delta_e = -parameter.gamma.c_n_3_delta_e;
     parameter.alpha.c_n_3_delta_c = -parameter.gamma.c_n_3_delta_c;
     parameter.alpha.c_n_3_0 = -parameter.gamma.c_n_3_0;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.pitch_rate.c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force * i.incidence_2;
     parameter.pitch_rate.c_m_alpha = p.c_bar_over_i_yy * i.reference_force * i.incidence;
     parameter.pitch_rate.c_m_delta_e = p.c_bar_over_i_yy * i.reference_force * u.delta_e;
@@ -598,6 +604,11 @@ fn parameter_jacobian_by_c_n_3_to_noise<R: Real>(
     parameter.pitch_rate.c_m_eta_1 = p.c_bar_over_i_yy * i.reference_force * i.eta_1;
     parameter.pitch_rate.c_m_eta_2 = p.c_bar_over_i_yy * i.reference_force * i.eta_2;
     parameter.pitch_rate.c_m_eta_3 = p.c_bar_over_i_yy * i.reference_force * i.eta_3;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by noise.
+#[inline(always)]
+fn parameter_jacobian_by_noise<R: Real>(parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>) {
     parameter.alpha_gust.gust_time = x.alpha_gust * p.inv_gust_time_2;
 }
 
@@ -618,10 +629,13 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter_jacobian_by_modes(&mut parameter, x, p, &i);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, u, p, &i);
-    parameter_jacobian_by_c_l_c_d(&mut parameter, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_l(&mut parameter, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_d(&mut parameter, u, p, &i);
     parameter_jacobian_by_c_n_1(&mut parameter, u, p, &i, &s, &q);
     parameter_jacobian_by_c_n_2(&mut parameter, u, p, &i, &s, &q);
-    parameter_jacobian_by_c_n_3_to_noise(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_n_3(&mut parameter, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_m(&mut parameter, u, p, &i);
+    parameter_jacobian_by_noise(&mut parameter, x, p);
     parameter
 }
 

@@ -85,10 +85,10 @@ ahv_core::record! {
         generalized_force_1_inv_omega_1_2, cos_alpha_c_t_eta_2_minus_c_d_eta_2, generalized_force_2_inv_omega_2_2,
         cos_alpha_c_t_eta_3_minus_c_d_eta_3, generalized_force_3_inv_omega_3_2, c_t_alpha_alpha,
         sin_alpha_c_t_eta_1_plus_c_l_eta_1, sin_alpha_c_t_eta_2_plus_c_l_eta_2, sin_alpha_c_t_eta_3_plus_c_l_eta_3,
-        sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2, c_t_phi_phi,
-        c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha, gravity_turn_cos_gamma,
+        sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2, table_c_t_phi_phi,
+        c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha, gravity_turn_cos_gamma,
         c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha,
-        c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0,
+        c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0,
         sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi,
     }
 }
@@ -181,26 +181,27 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
         + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * i.generalized_force_3_inv_omega_3_2;
     i.f_gamma_eta = i.turn_factor
         * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2; // rad/s
-    i.c_t_phi_phi = p.c_t_phi * u.phi;
-    i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0 + i.sin_alpha * (i.c_t_phi_phi + p.c_t_0);
+    i.table_c_t_phi_phi = p.c_t_phi * u.phi;
+    i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha = p.c_l_0 + i.sin_alpha * (i.table_c_t_phi_phi + p.c_t_0);
     i.gravity_turn_cos_gamma = i.gravity_turn * i.cos_gamma;
-    i.f_gamma = i.turn_factor * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+    i.f_gamma = i.turn_factor * i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         - i.gravity_turn_cos_gamma
         + i.f_gamma_eta; // rad/s
     i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha = p.c_l_alpha
         + i.sin_alpha * (p.c_t_alpha + p.c_t_phi_alpha * u.phi);
     i.g_gamma = i.turn_factor * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha; // 1/s
     i.f_alpha_eta = -i.f_gamma_eta; // rad/s
-    i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0 = p.c_t_phi_alpha * u.phi * x.alpha
+    i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0 =
+        p.c_t_phi_alpha * u.phi * x.alpha
         + i.c_t_alpha_alpha
-        + i.c_t_phi_phi
+        + i.table_c_t_phi_phi
         + p.c_t_0;
     i.f_alpha = i.gravity_turn_cos_gamma
         - i.turn_factor
             * (p.c_l_0 + p.c_l_alpha * x.alpha
                 + i.sin_alpha
                     * i
-                        .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0)
+                        .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0)
         + i.f_alpha_eta; // rad/s
     i.f_pitch_rate_eta = i.reference_force * p.inv_i_yy
         * (p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1 * i.generalized_force_1_inv_omega_1_2
@@ -209,7 +210,8 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
                 * i.generalized_force_3_inv_omega_3_2); // rad/s^2
     i.f_pitch_rate = i.reference_force * p.inv_i_yy
         * (p.z_t
-            * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+            * i
+                .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0
             + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
         + i.f_pitch_rate_eta; // rad/s^2
     i.g_pitch_rate = i.reference_force
@@ -315,8 +317,8 @@ ahv_core::record! {
         slope_of_f_alpha_eta_in_sin_alpha,
         d_dynamic_pressure_d_velocity, c_t_alpha_alpha_plus_c_t_0, d_reference_force_d_velocity,
         d_generalized_force_1_d_velocity, d_generalized_force_2_d_velocity, d_generalized_force_3_d_velocity,
-        c_t_phi_alpha_alpha_plus_c_t_phi, sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi, d_turn_factor_d_velocity,
-        inv_velocity_2, d_gravity_turn_d_velocity, d_g_gamma_d_velocity,
+        c_t_phi_alpha_alpha_plus_table_c_t_phi, sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi,
+        d_turn_factor_d_velocity, inv_velocity_2, d_gravity_turn_d_velocity, d_g_gamma_d_velocity,
         sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2,
         sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi, d_density_d_altitude, d_dynamic_pressure_d_altitude,
         d_radius_ratio_d_altitude, d_gravity_d_altitude, d_reference_force_d_altitude, d_generalized_force_1_d_altitude,
@@ -353,9 +355,9 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     s.d_generalized_force_1_d_velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     s.d_generalized_force_2_d_velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     s.d_generalized_force_3_d_velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
-    s.c_t_phi_alpha_alpha_plus_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
-    s.slope_of_g_velocity_in_dynamic_pressure = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha
-        * p.s_over_m; // ft^3/s^2/lb
+    s.c_t_phi_alpha_alpha_plus_table_c_t_phi = p.c_t_phi_alpha * x.alpha + p.c_t_phi;
+    s.slope_of_g_velocity_in_dynamic_pressure = s.c_t_phi_alpha_alpha_plus_table_c_t_phi
+        * i.cos_alpha * p.s_over_m; // ft^3/s^2/lb
     s.d_turn_factor_d_velocity = p.half_s_over_m * i.density; // 1/ft
     s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
     s.d_gravity_turn_d_velocity = -(i.gravity * s.inv_velocity_2
@@ -373,7 +375,7 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     s.slope_of_f_alpha_in_turn_factor = -(p.c_l_0 + p.c_l_alpha * x.alpha
         + i.sin_alpha
             * i
-                .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0); // rad
+                .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0); // rad
     s.slope_of_f_alpha_eta_in_turn_factor = -i
         .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2; // rad
     // rad*s/ft^0.5/slug^0.5
@@ -383,7 +385,8 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     // rad*s/ft^0.5/slug^0.5
     s.slope_of_f_alpha_eta_in_generalized_force_3 = -s.slope_of_f_gamma_eta_in_generalized_force_3;
     s.slope_of_f_pitch_rate_in_dynamic_pressure = (p.z_t
-        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+        * i
+            .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0
         + p.c_bar * (p.c_m_alpha_2 * i.alpha_2 + p.c_m_alpha * x.alpha + p.c_m_0))
         * p.s_over_i_yy; // rad*ft^2/s^2/lb
 
@@ -430,10 +433,10 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
 #[inline(always)]
 fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to alpha
-    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.reference_force
-        * p.inv_m; // ft/s^2
+    s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_table_c_t_phi
+        * i.reference_force * p.inv_m; // ft/s^2
     s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor * s.sum_of_chi_c_t_eta; // rad/s
-    s.slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.c_t_phi_phi + p.c_t_0); // rad/s
+    s.slope_of_f_gamma_in_sin_alpha = i.turn_factor * (i.table_c_t_phi_phi + p.c_t_0); // rad/s
     s.slope_of_f_gamma_eta_in_sin_alpha = i.turn_factor
         * s.sum_of_generalized_force_inv_omega_2_c_t_eta; // rad/s
     s.c_t_alpha_plus_c_t_phi_alpha_phi = p.c_t_alpha + p.c_t_phi_alpha * u.phi;
@@ -441,7 +444,7 @@ fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     s.d_g_gamma_d_alpha = s.slope_of_g_gamma_in_sin_alpha * i.cos_alpha; // 1/s/rad
     s.slope_of_alpha_rate_printed_in_sin_alpha = -s.slope_of_gamma_rate_printed_in_sin_alpha; // rad/s
     s.slope_of_f_alpha_in_sin_alpha = -i.turn_factor
-        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0; // rad/s
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0; // rad/s
     s.slope_of_f_alpha_eta_in_sin_alpha = -s.slope_of_f_gamma_eta_in_sin_alpha; // rad/s
 
     // Derivatives with respect to chi_1

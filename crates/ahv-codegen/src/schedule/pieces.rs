@@ -7,7 +7,7 @@ use crate::ir::{self, Basis};
 
 /// A function of more lines is computed in pieces; what a piece takes besides its statements is above that.
 pub(super) const LONGEST: usize = 118;
-/// Pieces are joined up to this many lines.
+/// A part of a stage is as near to this many lines as its length allows.
 const FULL: usize = 90;
 /// Characters of a line.
 const WIDTH: usize = 75;
@@ -23,7 +23,10 @@ pub(crate) struct Group {
 }
 
 /// The groups of a function of so many lines, in the order in which their first entries stand; none where it is short enough.
-/// A group that is too long by itself is divided by rows.
+///
+/// There is one for each component or group of parameters that entries are derivatives by, those with an index together. One that
+/// is too long is divided by the index, then by rows. Short neighbours are not joined: a term more would change which,
+/// and with it names that the term has nothing to do with.
 pub(super) fn groups(
     function: &ir::Function,
     document: &ir::Document,
@@ -49,19 +52,35 @@ pub(super) fn groups(
     };
     let row = |position: &usize| entries[*position].1.at.first().cloned();
     let mut groups = Vec::new();
-    for group in divided((0..entries.len()).collect(), by) {
-        if length(&group) <= LONGEST {
-            groups.push(group);
+    for family in divided((0..entries.len()).collect(), |it| stem(&by(it))) {
+        if length(&family) <= LONGEST {
+            groups.push(family);
             continue;
         }
-        let rows = divided(group.entries, |it| row(it).unwrap_or_default());
-        groups.extend(rows.into_iter().map(|of_row| Group {
-            label: format!("{}_of_{}", group.label, of_row.label),
-            about: format!("{} in row {}", group.label, of_row.label),
-            ..of_row
-        }));
+        for group in divided(family.entries, by) {
+            if length(&group) <= LONGEST {
+                groups.push(group);
+                continue;
+            }
+            let rows = divided(group.entries, |it| row(it).unwrap_or_default());
+            groups.extend(rows.into_iter().map(|of_row| Group {
+                label: format!("{}_of_{}", group.label, of_row.label),
+                about: format!("{} in row {}", group.label, of_row.label),
+                ..of_row
+            }));
+        }
     }
     groups
+}
+
+/// A label without its index: what differs in that alone is computed together.
+fn stem(label: &str) -> String {
+    let stem = label.trim_end_matches(|c: char| c.is_ascii_digit());
+    if stem.len() < label.len() {
+        stem.trim_end_matches('_').to_owned()
+    } else {
+        label.to_owned()
+    }
 }
 
 /// Entries by their labels, in the order in which the first of each stand.
@@ -85,34 +104,6 @@ fn divided(entries: Vec<usize>, label: impl Fn(&usize) -> String) -> Vec<Group> 
 fn identifier(text: &str) -> String {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     text.to_lowercase().chars().map(letter).collect()
-}
-
-/// Neighbours of the groups as one, as long as their bodies together are short enough.
-pub(super) fn joined(
-    groups: Vec<Group>,
-    mut body: impl FnMut(&Group) -> Body,
-) -> Vec<(Group, Body)> {
-    let mut found: Vec<(Group, Body, Vec<String>)> = Vec::new();
-    for group in groups {
-        let labels = vec![group.label.clone()];
-        let alone = body(&group);
-        if let Some((last, last_body, names)) = found.last_mut()
-            && length(last_body) + length(&alone) <= FULL
-        {
-            names.extend(labels);
-            last.entries.extend(group.entries);
-            last.about += &format!(", {}", group.about);
-            last.label = match names.as_slice() {
-                [first, .., last] if names.len() > 2 => format!("{first}_to_{last}"),
-                names => names.join("_"),
-            };
-            *last_body = body(last);
-        } else {
-            found.push((group, alone, labels));
-        }
-    }
-    let parts = found.into_iter();
-    parts.map(|(group, body, _)| (group, body)).collect()
 }
 
 /// About how many lines a body has.

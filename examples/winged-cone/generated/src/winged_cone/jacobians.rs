@@ -38,19 +38,18 @@ pub fn jacobians_values_from<R: Real>(
 
     // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft
-    state.gamma.velocity =
-        p.inv_m * (s.d_lift_d_velocity * i.inv_velocity - (i.lift + s.thrust_sin_alpha) * s.inv_velocity_2)
-        + i.cos_gamma * (i.gravity * s.inv_velocity_2 + i.inv_radius)
-        + s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_velocity; // rad/ft
+    state.gamma.velocity = p.inv_m
+        * (i.inv_velocity * (s.d_lift_d_velocity + i.sin_alpha * s.d_thrust_d_velocity)
+            - (i.lift + s.thrust_sin_alpha) * s.inv_velocity_2)
+        + i.cos_gamma * (i.gravity * s.inv_velocity_2 + i.inv_radius); // rad/ft
     let d_pitching_moment_d_velocity = p.c_bar
         * (i.reference_force * s.d_c_m_d_velocity + i.c_m * s.d_reference_force_d_velocity); // lb*s
 
     // Derivatives with respect to altitude
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft
-    state.gamma.altitude = s.slope_of_gamma_rate_in_radius
-        + s.slope_of_gamma_rate_in_gravity * s.d_gravity_d_altitude
-        + s.d_lift_d_altitude * p.inv_m * i.inv_velocity
-        + s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_altitude; // rad/s/ft
+    state.gamma.altitude = p.inv_m * i.inv_velocity
+        * (s.d_lift_d_altitude + i.sin_alpha * s.d_thrust_d_altitude) - i.cos_gamma
+        * (x.velocity * i.inv_radius_2 + i.inv_velocity * s.d_gravity_d_altitude); // rad/s/ft
     let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb
 
     // Derivatives with respect to gamma
@@ -65,24 +64,26 @@ pub fn jacobians_values_from<R: Real>(
     // Derivatives with respect to pitch_rate
     let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar * s.d_c_m_d_pitch_rate; // ft*lb*s/rad
 
+    // Derivatives with respect to beta
+    state.gamma.beta = i.sin_alpha * p.inv_m * i.inv_velocity * s.d_thrust_d_beta; // rad/s
+
     // Derivatives with respect to delta_e
     let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_tail; // ft*lb/rad
 
     state.velocity.velocity = p.inv_m * (i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity);
-    state.velocity.altitude = p.inv_m * (i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude)
+    state.velocity.altitude = p.inv_m * (s.d_thrust_d_altitude * i.cos_alpha - d_drag_d_altitude)
         - i.sin_gamma * s.d_gravity_d_altitude;
     state.velocity.gamma = -i.cos_gamma * i.gravity;
     state.velocity.alpha = -p.inv_m * (s.thrust_sin_alpha + d_drag_d_alpha);
     state.velocity.beta = i.cos_alpha * p.inv_m * s.d_thrust_d_beta;
     state.altitude.velocity = i.sin_gamma;
     state.altitude.gamma = x.velocity * i.cos_gamma;
-    state.gamma.beta = s.d_gamma_rate_d_beta;
     state.alpha.velocity = -state.gamma.velocity;
     state.alpha.altitude = -state.gamma.altitude;
     state.alpha.gamma = -state.gamma.gamma;
     state.alpha.alpha = -state.gamma.alpha;
     state.alpha.pitch_rate = R::ONE;
-    state.alpha.beta = -s.d_gamma_rate_d_beta;
+    state.alpha.beta = -state.gamma.beta;
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy;
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy;
     state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy;
@@ -99,7 +100,7 @@ pub fn jacobians_values_from<R: Real>(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 139 operations: 31 additions, 100 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+/// 138 operations: 31 additions, 99 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -121,7 +122,7 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 157 operations: 37 additions, 112 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+/// 156 operations: 37 additions, 111 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

@@ -23,7 +23,7 @@ ahv_core::entries! {
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 178 operations: 23 additions, 147 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+/// 169 operations: 23 additions, 138 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
@@ -32,9 +32,8 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
 
     // Derivatives with respect to parameters
     parameter.gamma.m = -(i.lift + s.thrust_sin_alpha) * p.inv_m_2 * i.inv_velocity; // rad/s/slug
-    parameter.gamma.s = i.dynamic_pressure
-        * (i.c_l * p.inv_m * i.inv_velocity
-            + s.slope_of_gamma_rate_in_thrust * i.thrust_coefficient); // rad/s/ft^2
+    parameter.gamma.s = i.dynamic_pressure * p.inv_m * i.inv_velocity
+        * (i.c_l + i.sin_alpha * i.thrust_coefficient); // rad/s/ft^2
     let d_pitching_moment_d_c_bar = i.reference_force
         * (i.c_m
             + p.half_c_bar
@@ -45,8 +44,8 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let d_drag_d_rho_0 = i.c_d * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_thrust_d_rho_0 = i.thrust_coefficient * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_lift_d_rho_0 = i.c_l * d_reference_force_d_rho_0; // lb*ft^3/slug
-    parameter.gamma.rho_0 = d_lift_d_rho_0 * p.inv_m * i.inv_velocity
-        + s.slope_of_gamma_rate_in_thrust * d_thrust_d_rho_0; // rad*ft^3/s/slug
+    parameter.gamma.rho_0 = p.inv_m * i.inv_velocity
+        * (d_lift_d_rho_0 + i.sin_alpha * d_thrust_d_rho_0); // rad*ft^3/s/slug
     let d_pitching_moment_d_rho_0 = i.c_m * p.c_bar * d_reference_force_d_rho_0; // ft^4*lb/slug
     let d_density_d_h_s = i.density * x.altitude * p.inv_h_s_2; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
@@ -54,11 +53,16 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft
     let d_thrust_d_h_s = i.thrust_coefficient * d_reference_force_d_h_s; // lb/ft
     let d_lift_d_h_s = i.c_l * d_reference_force_d_h_s; // lb/ft
-    parameter.gamma.h_s = d_lift_d_h_s * p.inv_m * i.inv_velocity
-        + s.slope_of_gamma_rate_in_thrust * d_thrust_d_h_s; // rad/s/ft
+    parameter.gamma.h_s = p.inv_m * i.inv_velocity * (d_lift_d_h_s + i.sin_alpha * d_thrust_d_h_s); // rad/s/ft
     let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb
-    parameter.gamma.r_e = s.slope_of_gamma_rate_in_radius
-        - R::TWO * s.slope_of_gamma_rate_in_gravity * i.gravity * i.inv_radius; // rad/s/ft
+    parameter.gamma.r_e = i.cos_gamma
+        * (R::TWO * i.inv_velocity * i.gravity * i.inv_radius - x.velocity * i.inv_radius_2); // rad/s/ft
+    parameter.gamma.mu = -i.cos_gamma * i.inv_velocity * i.inv_radius_2; // rad*s/ft^3
+    parameter.gamma.c_t_beta = i.sin_alpha * p.inv_m * i.inv_velocity * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t * x.beta; // rad/s
+    parameter.gamma.c_t_high_0 = i.sin_alpha * p.inv_m * i.inv_velocity * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high; // rad/s
+    parameter.gamma.c_t_high_beta = parameter.gamma.c_t_high_0 * x.beta; // rad/s
 
     parameter.velocity.m = -(i.thrust * i.cos_alpha - i.drag) * p.inv_m_2;
     parameter.velocity.s = p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.thrust_coefficient - i.c_d);
@@ -75,27 +79,17 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
         * s.slope_of_thrust_coefficient_in_c_t_high;
     parameter.velocity.c_t_high_beta = i.cos_alpha * p.inv_m * i.reference_force
         * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
-    parameter.gamma.mu = s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
     parameter.gamma.c_l_alpha = i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
-    parameter.gamma.c_t_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t * x.beta;
-    parameter.gamma.c_t_high_0 = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high;
-    parameter.gamma.c_t_high_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
     parameter.alpha.m = -parameter.gamma.m;
     parameter.alpha.s = -parameter.gamma.s;
     parameter.alpha.rho_0 = -parameter.gamma.rho_0;
     parameter.alpha.h_s = -parameter.gamma.h_s;
     parameter.alpha.r_e = -parameter.gamma.r_e;
-    parameter.alpha.mu = -s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
+    parameter.alpha.mu = -parameter.gamma.mu;
     parameter.alpha.c_l_alpha = -i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
-    parameter.alpha.c_t_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t * x.beta;
-    parameter.alpha.c_t_high_0 = -s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high;
-    parameter.alpha.c_t_high_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
+    parameter.alpha.c_t_beta = -parameter.gamma.c_t_beta;
+    parameter.alpha.c_t_high_0 = -parameter.gamma.c_t_high_0;
+    parameter.alpha.c_t_high_beta = -parameter.gamma.c_t_high_beta;
     parameter.pitch_rate.i_yy = -i.pitching_moment * p.inv_i_yy_2;
     parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
     parameter.pitch_rate.c_bar = d_pitching_moment_d_c_bar * p.inv_i_yy;
