@@ -95,6 +95,7 @@ pub use provenance::{Provenance, Status};
 pub use real::Real;
 pub use shown::Shown;
 pub use table::{
-    Choice, ChoiceOption, Entry, EntryKind, Interval, ParameterSet, Rule, Sign, Table, Term,
+    Choice, ChoiceOption, Entry, EntryKind, Fit, FitVariable, Interval, ParameterSet, Rule, Sign,
+    Table, Term,
 };
 pub use vector::Vector;

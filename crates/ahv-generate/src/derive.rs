@@ -20,8 +20,8 @@ use crate::tables::{Diagnostic, Tables};
 const BAD_TABLES: i32 = 2;
 
 #[derive(Deserialize)]
-struct Diagnostics {
-    diagnostics: Vec<Diagnostic>,
+pub(crate) struct Diagnostics {
+    pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
 /// The IR of each table, by the table's name; and the audit, where a table has the printed form. Those that are `known` are
@@ -112,6 +112,6 @@ fn crash(stderr: &[u8], tables: &Tables) -> Option<Diagnostic> {
     Some(Diagnostic::of_line(&file, line, message))
 }
 
-fn with_stderr(message: String, output: &Output) -> Failure {
+pub(crate) fn with_stderr(message: String, output: &Output) -> Failure {
     Failure::new(format!("{message}{}", last_lines(&output.stderr)))
 }

@@ -35,18 +35,18 @@ pub(crate) struct Tables {
 /// a family, at a line.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Diagnostic {
-    rule: String,
-    file: String,
-    path: Vec<String>,
-    part: DiagnosticPart,
-    message: String,
-    help: Option<String>,
-    line: Option<usize>,
+    pub(crate) rule: String,
+    pub(crate) file: String,
+    pub(crate) path: Vec<String>,
+    pub(crate) part: DiagnosticPart,
+    pub(crate) message: String,
+    pub(crate) help: Option<String>,
+    pub(crate) line: Option<usize>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum DiagnosticPart {
+pub(crate) enum DiagnosticPart {
     Key,
     Value,
 }

@@ -9,7 +9,7 @@ const REFUSED: &str = r#"
 dcom.toml | canard = "none" | canard = "fixed" | `fixed` at `choices.canard`
 com.toml | m = { value = 300.0 | mm = { value = 300.0 | vehicle.m.value | com.toml
 com.json | "slug/ft": [ | "slug/foot": [ | `slug/ft` | derive it again
-dcom.json | "schema_version": 4 | "schema_version": 1 | schema version 1 | reads 4
+dcom.json | "schema_version": 5 | "schema_version": 1 | schema version 1 | reads 5
 dcom.json | "input": [ | "inputs": [ | unknown variant `inputs`
 dcom.json | "class": "constant" | "class": "konstant" | unknown variant `konstant`
 dcom.json | "status": "derived" | "status": "guessed" | unknown variant `guessed`

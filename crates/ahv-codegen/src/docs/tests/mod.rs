@@ -36,11 +36,12 @@ m = { value = 3.0, unit = "slug" }
 
 /// Its IR.
 const IR: &str = r#"{
-  "schema_version": 4,
+  "schema_version": 5,
   "provenance": {"table": "small", "generator": "0", "casadi": "0"},
   "units": {"system": "ft-slug-s-rad", "other": "si", "factors": {"1": ["1", 1.0], "1/rad": ["1/rad", 1.0], "ft/s": ["m/s", 0.3048],
     "ft/s^2": ["m/s^2", 0.3048], "rad": ["rad", 1.0], "rad/s": ["rad/s", 1.0], "s^0.5": ["s^0.5", 1.0], "slug": ["kg", 14.5939]}},
   "joins": [],
+  "fits": [],
   "choices": [{"name": "canard", "type": "Canard", "doc": "canard", "options": [
     {"name": "free", "doc": "an input", "values": {"slaving": 0.0}},
     {"name": "slaved", "doc": "follows the elevator", "values": {"slaving": 1.0}}]}],
