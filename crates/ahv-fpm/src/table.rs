@@ -30,6 +30,7 @@ pub const TABLE: Table = Table {
         ],
     )],
     joins: &[],
+    fits: &[],
     validity: &[
         Interval::new("velocity", "ft/s", validity::VELOCITY, &["velocity"]),
         Interval::new("altitude", "ft", validity::ALTITUDE, &["altitude"]),
