@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from .derivation import Derivation
 from .expression import dimensions_of, tree
 from .function import Entry, Output
 from .schema import Variable
-
-if TYPE_CHECKING:
-    from .model import Model
 
 _OF_TWO = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX)
 _OF_ONE = (ca.OP_FABS, ca.OP_SIGN)
 
 
-def add_boundaries(m: Model, rates: Mapping[str, ca.SX]) -> None:
+def add_boundaries(m: Derivation, rates: Mapping[str, ca.SX]) -> None:
     """The function `boundaries`, if there are any: each is 0 where the drift goes over to another formula."""
     found: dict[str, tuple[str, str, str, ca.SX]] = {}
     for owner, what, expr in _parts(m, rates):
@@ -44,14 +41,14 @@ def add_boundaries(m: Model, rates: Mapping[str, ca.SX]) -> None:
     m.add("boundaries", "boundaries", doc, "", [Output("", ("boundary",), tuple(entries))])
 
 
-def _unit(m: Model, *sides: ca.SX) -> str:
+def _unit(m: Derivation, *sides: ca.SX) -> str:
     """The unit in which two sides are compared: that of a name on one of them, which may be an angle's."""
     plain = [side.dep(0) if not side.is_constant() and side.op() == ca.OP_NEG else side for side in sides]
     named = [side.name() for side in plain if side.is_symbolic()]
     return m.graph.units[named[0]] if named else m.graph.unit_of(dimensions_of(sides[0] - sides[1], m.graph.units))
 
 
-def _parts(m: Model, rates: Mapping[str, ca.SX]) -> Iterator[tuple[str, str, ca.SX]]:
+def _parts(m: Derivation, rates: Mapping[str, ca.SX]) -> Iterator[tuple[str, str, ca.SX]]:
     """The quantities that the rates depend on, in their order, and the rates: name, what it is, and expression."""
     needed: set[str] = set()
     waiting = [symbol.name() for rate in rates.values() for symbol in ca.symvar(rate)]

@@ -6,19 +6,17 @@ import contextlib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from . import names, units
 from .checked import checked
+from .contents import Contents
 from .diagnostics import FamilyError, line_of_file, nearest, suggestion
 from .joined import JOINED, PARTS, JoinedModel, joined_bases
 from .model import Model
 from .part import Instance
 from .polynomial import powers_of_name
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_order, check_texts
-
-if TYPE_CHECKING:
-    from .table import Table
 
 Equations = Callable[[Model], None]
 _T = TypeVar("_T")
@@ -305,7 +303,7 @@ class Family:
             if model not in self.models:
                 raise FamilyError(f"`{model}` is not a model of the family", suggestion(model, self.models), line)
 
-    def build(self, name: str, table: Table) -> Model:
+    def build(self, name: str, table: Contents) -> Model:
         """Derive one of its models from a table."""
         spec = self.models[name]
         common = (spec.name, spec.title, spec.equations, table, dict(spec.bases))

@@ -5,25 +5,19 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
 
 import casadi as ca
 
 from . import motion, names, stochastic, units
 from .checked import checked
+from .derivation import Derivation
 from .diagnostics import FamilyError, Once, suggestion
-from .function import Entry, Function, NoiseStructure, Output
-from .graph import Graph, Intermediate
+from .function import Entry, NoiseStructure, Output
+from .graph import Intermediate
 from .polynomial import Polynomial
 from .schema import Parameter, Quantity, Variable, check_texts
 from .traits import Equation, Given, Mode, Named, Sought, Traits, Trim, name_of
-
-if TYPE_CHECKING:
-    from .table import Table
-
-# Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity may share a name.
-LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
 
 Number = ca.SX | float
 Rates = Mapping[Variable, Number] | Mapping[str, Number]
@@ -31,7 +25,7 @@ Gains = Mapping[tuple[Variable, Variable], Number] | Mapping[tuple[str, str], Nu
 
 
 @dataclass
-class Model:
+class Model(Derivation):
     """A model under construction: what a family's function is given, and states the equations with.
 
     Expressions are CasADi scalars: `model[alpha]` is the symbol of a state, an input, a parameter or a quantity, and
@@ -39,28 +33,16 @@ class Model:
     travel into the generated code; its dimensions are checked where it is defined.
     """
 
-    name: str
-    title: str
-    equations: str
-    table: Table
-    bases: dict[str, tuple[Variable, ...]]
     traits: Traits = field(default_factory=Traits)
-    graph: Graph = field(init=False)
-    functions: list[Function] = field(default_factory=list)
     noise_structure: NoiseStructure | None = None
     rates: dict[str, ca.SX] | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._section, self._equation = self.title, ""
         self._once = Once()
         # Of a quantity the unit that its author states it in; the graph has those of the table.
         self._units: dict[str, str] = {}
-        self.graph = Graph(self.table.units)
-        for basis, prefix in LEAVES.items():
-            for variable in self.bases.get(basis, ()):
-                self.graph.leaf(f"{prefix}.{variable.name}", variable.unit, variable.symbol)
-        for parameter in self.table.parameters:
-            self.graph.leaf(f"p.{parameter.name}", parameter.unit, parameter.symbol)
 
     # Quantities
 
@@ -389,75 +371,6 @@ class Model:
             help_line = suggestion(name, self.graph.quantities)
             raise FamilyError(f"`{name}` is not a quantity that `{self.name}` has defined", help_line)
         return self.graph.quantities[name]
-
-    # Names, units and functions
-
-    def noise(self, name: str) -> ca.SX:
-        """The symbol of a Wiener increment."""
-        return self.graph.symbols[f"w.{name}"]
-
-    def unit(self, name: str) -> str:
-        """The unit of a state, an input or another component, in the system of the table."""
-        return units.converted(self.variable(name).unit, self.table.units)
-
-    def variable(self, name: str) -> Variable:
-        """A component of a basis by its name."""
-        known = {v.name: v for basis in self.bases.values() for v in basis}
-        if name not in known:
-            raise FamilyError(f"`{self.name}` has no variable `{name}`", suggestion(name, known))
-        return known[name]
-
-    def leaves(self, basis: str) -> dict[str, str]:
-        """Names of the entries of a basis, in order, with the names that they have in expressions."""
-        if basis == "parameter":
-            return {p.name: f"p.{p.name}" for p in self.table.parameters}
-        return {v.name: f"{LEAVES[basis]}.{v.name}" for v in self.bases[basis]}
-
-    def names(self, basis: str) -> tuple[str, ...]:
-        """Names of the entries of a basis, in order."""
-        return tuple(v.name for v in self.bases[basis])
-
-    def vector(self, basis: str, values: Mapping[str, ca.SX], name: str) -> Output:
-        """An output over one basis."""
-        entries = tuple(Entry((row,), values[row]) for row in self.names(basis) if not values[row].is_zero())
-        return Output(name, (basis,), entries)
-
-    def matrix(self, name: str, rows: str, columns: str, exprs: Mapping[str, ca.SX]) -> Output:
-        """The derivatives of `exprs` (by row) with respect to a basis."""
-        # Column by column, so that the derivatives with respect to one variable stand together.
-        found = {
-            (row, column): self.graph.derivative(exprs[row], leaf)
-            for column, leaf in self.leaves(columns).items()
-            for row in self.names(rows)
-        }
-        at = [(row, column) for row in self.names(rows) for column in self.leaves(columns)]
-        entries = tuple(Entry(key, found[key]) for key in at if not found[key].is_zero())
-        return Output(name, (rows, columns), entries)
-
-    @checked
-    def add(
-        self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
-    ) -> None:
-        """Add a function; the units of its outputs are turned into those of the table, and checked."""
-        if name in [function.name for function in self.functions]:
-            raise FamilyError(f"the name `{name}` is used twice, for two functions of `{self.name}`")
-        fault = names.fault_of_functions([name, *(function.name for function in self.functions)])
-        if fault is not None:
-            raise FamilyError(fault)
-        system = self.table.units
-        converted = tuple(
-            replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs
-        )
-        for output in converted:
-            for entry in output.entries:
-                if output.unit is not None:
-                    self.graph.check(f"the function `{name}`", entry.expr, output.unit)
-        self.functions.append(Function(name, group, doc, equation, converted, compressed))
-
-    @checked
-    def add_scalar(self, name: str, group: str, doc: str, equation: str, expr: ca.SX, unit: str) -> None:
-        """Add a function with one number as its result."""
-        self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])
 
 
 def _listed(stated: list[str]) -> str:

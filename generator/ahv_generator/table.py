@@ -6,20 +6,19 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from . import emit, family_file, names, units
+from .contents import Contents, ParameterSet, TableParameter
 from .diagnostics import Faults, TableError, suggestion
 from .entries import Entries, Provenance
 from .family import Family, Outline
 from .family_file import FamilyFile, Place
 from .joined import JOINED, PARTS
 from .joins import Joins, JoinText
+from .model import Model
 from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable
-
-if TYPE_CHECKING:
-    from .model import Model
 
 _HEADER_KEYS = ("name", "family", "models", "units", "set", "source", "status", "uncertainty")
 _BOX_KEYS = ("min", "max", "unit")
@@ -27,54 +26,19 @@ CHOICES = "choices"
 
 
 @dataclass(frozen=True)
-class TableParameter:
-    """A parameter or coefficient of a table; its value stays in the table.
+class Table(Contents):
+    """A checked table: what it holds, and what it says of its models.
 
-    `kind` is one of `parameter`, `coefficient`, `required` (a coefficient that must be listed) and `switch`.
+    `schemas` are what a table of one of the models by itself holds.
     """
 
-    name: str
-    path: tuple[str, ...]
-    symbol: str
-    unit: str
-    doc: str
-    source: str
-    status: str
-    uncertainty: float
-    kind: str
-
-
-@dataclass(frozen=True)
-class ParameterSet:
-    """A named set: the parameters that it replaces, with the places of their new values."""
-
-    name: str
-    parameters: tuple[TableParameter, ...]
-
-
-@dataclass(frozen=True)
-class Table:
-    """A checked table: parameters in order, and the polynomial of each quantity.
-
-    `schemas` are what a table of one of the models by itself holds. `values` are by paths, `box` is the validity box
-    with angles in rad; `emitted` are the groups of functions that are emitted, None for all.
-    """
-
-    path: Path
     name: str
     models: tuple[str, ...]
-    units: str
     file: FamilyFile
     family: Family
-    schema: Schema
     schemas: Mapping[str, Schema]
-    parameters: tuple[TableParameter, ...]
-    polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
     joins: tuple[JoinText, ...]
-    emitted: tuple[str, ...] | None
-    values: Mapping[tuple[str, ...], float]
-    box: Mapping[str, tuple[float, float]]
 
     @property
     def audited(self) -> tuple[str, ...]:
@@ -177,20 +141,20 @@ class _Reader:
         parameters = tuple(self.parameters.values())
         return Table(
             self.path,
-            name,
-            models,
             system,
-            file,
-            family,
             schema,
-            schemas,
             parameters,
             polynomials,
-            sets,
-            joins,
             emitted,
             self.entries.values,
             self.box,
+            name,
+            models,
+            file,
+            family,
+            schemas,
+            sets,
+            joins,
         )
 
     def add(self, parameter: TableParameter) -> None:

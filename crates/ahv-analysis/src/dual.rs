@@ -97,14 +97,6 @@ impl Real for Dual {
         (self.through(sin, cos), self.through(cos, -sin))
     }
 
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
     fn exp(self) -> Self {
         let value = Real::exp(self.value);
         self.through(value, value)
@@ -160,10 +152,6 @@ impl Real for Dual {
     fn sqrt(self) -> Self {
         let value = Real::sqrt(self.value);
         self.through(value, 0.5 / value)
-    }
-
-    fn recip(self) -> Self {
-        Self::ONE / self
     }
 
     fn abs(self) -> Self {
