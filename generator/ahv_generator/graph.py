@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import casadi as ca
 
 from . import units
-from .expression import check_dimensions
+from .expression import ExpressionError, check_dimensions
+
+_NOTHING = ca.SX.nan()
 
 
 @dataclass(frozen=True)
@@ -57,15 +59,17 @@ class Graph:
 
     def define(self, name: str, expr: ca.SX, *, symbol: str, unit: str, doc: str, equation: str, section: str) -> ca.SX:
         """Name a quantity and return its symbol; its dimensions are checked against `unit`."""
+        used = self._names_in(expr)
         check_dimensions(name, expr, unit, self.units)
         result = self.leaf(name, unit)
-        self._names[name] = self._names_in(expr)
+        self._names[name] = used
         self._leaves[name] = frozenset().union(*(self._leaves[used] for used in self._names[name]))
         self.quantities[name] = Intermediate(name, symbol, self.units[name], doc, equation, section, expr)
         return result
 
     def check(self, name: str, expr: ca.SX, unit: str) -> None:
-        """Raise `ExpressionError` unless an expression has the dimensions of `unit`."""
+        """Raise `ExpressionError` unless an expression, of symbols of this model, has the dimensions of `unit`."""
+        self._names_in(expr)
         check_dimensions(name, expr, unit, self.units)
 
     def leaves_in(self, expr: ca.SX) -> frozenset[str]:
@@ -77,8 +81,13 @@ class Graph:
         return units.converted(units.basic(dimensions), self.system)
 
     def _names_in(self, expr: ca.SX) -> list[str]:
+        symbols = ca.symvar(expr)
+        for symbol in symbols:
+            # A symbol of the same name that another model has would be a constant here.
+            if not ca.is_equal(symbol, self.symbols.get(symbol.name(), _NOTHING)):
+                raise ExpressionError(f"`{symbol.name()}` is not a symbol of this model: write it as `model[...]`")
         # CasADi lists symbols in traversal order; the order of declaration is the one a reader knows.
-        return sorted((symbol.name() for symbol in ca.symvar(expr)), key=self._position.__getitem__)
+        return sorted((symbol.name() for symbol in symbols), key=self._position.__getitem__)
 
     def derivative(self, expr: ca.SX, variable: str) -> ca.SX:
         """The total derivative of `expr` with respect to a leaf; 0 where it is structurally zero."""
@@ -102,9 +111,12 @@ class Graph:
         return total
 
     def _partial(self, of: Intermediate, name: str, partial: ca.SX, variable: str) -> ca.SX:
-        """The partial derivative of a quantity by another: by a name of its own where it is a sum, to be used again."""
+        """The partial derivative of a quantity by another: by a name of its own where it is a sum, to be used again.
+
+        The sine of an angle is what it is: two partial derivatives may be the same one, and neither is the other's.
+        """
         own = f"slope_of_{of.name}_in_{name}"
-        if _is_product(partial) or not _is_basic(of.name) or len(own) > _LONGEST:
+        if _is_product(partial, of_calls=True) or not _is_basic(of.name) or len(own) > _LONGEST:
             return partial
         key = (of.name, name)
         if key not in self._partials:
@@ -196,10 +208,14 @@ _LONGEST = 44
 
 
 _PRODUCT = (ca.OP_MUL, ca.OP_NEG, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV, ca.OP_POW, ca.OP_CONSTPOW)
+_SUM = (ca.OP_ADD, ca.OP_SUB)
 
 
-def _is_product(expr: ca.SX) -> bool:
-    """Whether there is neither a sum nor an elementary function in an expression."""
+def _is_product(expr: ca.SX, *, of_calls: bool = False) -> bool:
+    """Whether there is no sum in an expression, and no elementary function but, `of_calls`, of a symbol."""
     if expr.is_constant() or expr.is_symbolic():
         return True
-    return expr.op() in _PRODUCT and all(_is_product(expr.dep(i)) for i in range(expr.n_dep()))
+    parts = [expr.dep(i) for i in range(expr.n_dep())]
+    if expr.op() in _PRODUCT:
+        return all(_is_product(part, of_calls=of_calls) for part in parts)
+    return of_calls and expr.op() not in _SUM and all(part.is_symbolic() for part in parts)

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 from . import __version__, emit, units
+from .contents import TableParameter
 from .expression import tree
 from .function import Function, Output
 from .model import Model
 from .schema import Choice, Rule, Variable
-from .table import Table, TableParameter
+from .table import Table
 
 SCHEMA_VERSION = 4
 

@@ -21,6 +21,7 @@ mod steps;
 mod trajectory;
 mod tutorial;
 mod vectors;
+mod wheel;
 
 use std::process::ExitCode;
 
@@ -87,6 +88,12 @@ enum Task {
         #[arg(long)]
         write: bool,
     },
+    /// Build the wheel of Python, install it in a clean environment, and test it there
+    Wheel {
+        /// As it is published; the tests take the same time, the build much longer
+        #[arg(long)]
+        release: bool,
+    },
     /// Change a coefficient, regenerate, and fly both models with both values
     Demo,
 }
@@ -108,6 +115,7 @@ fn main() -> ExitCode {
         Task::Instructions { write } => instructions::run(write),
         Task::Book => book::run(),
         Task::Firmware { write } => firmware::run(steps::BARE_METAL, write),
+        Task::Wheel { release } => wheel::run(release),
         Task::Demo => demo::run(),
     };
     match done {

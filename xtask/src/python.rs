@@ -16,17 +16,22 @@ pub(crate) fn set_up() -> Result<(), String> {
 
 /// The interpreter that has what generation needs.
 pub(crate) fn generation() -> Result<PathBuf, String> {
-    environment("generation", "requirements.txt")
+    environment("generation", "generator/requirements.txt")
 }
 
 /// The interpreter that has what tests and the audit need.
 pub(crate) fn development() -> Result<PathBuf, String> {
-    environment("development", "requirements-dev.txt")
+    environment("development", "generator/requirements-dev.txt")
 }
 
 /// The interpreter that has the large checkers of C: clang and clang-tidy.
 pub(crate) fn checkers_of_c() -> Result<PathBuf, String> {
-    environment("checking C", "requirements-c.txt")
+    environment("checking C", "generator/requirements-c.txt")
+}
+
+/// The interpreter that has what the bindings are built and tested with.
+pub(crate) fn bindings() -> Result<PathBuf, String> {
+    environment("the bindings", "crates/ahv-python/requirements-dev.txt")
 }
 
 /// The folder where the environments are, and what else stays from run to run.
@@ -36,7 +41,7 @@ pub(crate) fn cache() -> Result<Option<PathBuf>, String> {
 }
 
 fn environment(purpose: &str, requirements: &str) -> Result<PathBuf, String> {
-    let path = shell::root().join("generator").join(requirements);
+    let path = shell::root().join(requirements);
     let text = fs::read_to_string(&path)
         .map_err(|error| format!("error: cannot read {}: {error}", path.display()))?;
     Surroundings::of_process()

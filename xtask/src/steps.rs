@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::{
     audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, packages, python,
-    shell, tutorial,
+    shell, tutorial, wheel,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -16,6 +16,7 @@ const XTASK: [&str; 4] = [
     "target",
 ];
 const BENCH: [&str; 4] = ["--manifest-path", shell::BENCH, "--target-dir", "target"];
+const BINDINGS: [&str; 4] = ["--manifest-path", shell::BINDINGS, "--target-dir", "target"];
 const CONSUMER: [&str; 4] = [
     "--manifest-path",
     "tests/consumer/Cargo.toml",
@@ -38,15 +39,18 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 25] = [
+const STEPS: [Step; 32] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
-        cargo(&["fmt", "--check"], &XTASK[..2], &[])
+        cargo(&["fmt", "--all", "--check"], &XTASK[..2], &[])
     }),
     ("clippy", || {
+        cargo(&["clippy", "--workspace", "--all-targets"], &[], &DENY)
+    }),
+    ("clippy without generation", || {
         cargo(
-            &["clippy", "--workspace", "--all-targets"],
-            &shell::FEATURES,
+            &["clippy", "--package", "ahv", "--no-default-features"],
+            &[],
             &DENY,
         )
     }),
@@ -63,6 +67,26 @@ const STEPS: [Step; 25] = [
             &DENY,
         )
     }),
+    ("format of the bindings", || {
+        cargo(
+            &["fmt", "--check"],
+            &BINDINGS[..2],
+            &["-p", "ahv-python", "-p", "ahv-extension"],
+        )
+    }),
+    ("clippy of the bindings", || {
+        cargo(
+            &[
+                "clippy",
+                "--package",
+                "ahv-python",
+                "--all-targets",
+                "--locked",
+            ],
+            &BINDINGS,
+            &DENY,
+        )
+    }),
     ("ruff", || module(&["ruff", "check", ".", PEERS, EXAMPLES])),
     ("ruff format", || {
         module(&["ruff", "format", "--check", ".", PEERS, EXAMPLES])
@@ -74,12 +98,19 @@ const STEPS: [Step; 25] = [
         module(&["pytest", "--quiet", "--numprocesses", "2"])
     }),
     ("generate --check", generate_check),
-    ("cargo test", || {
-        cargo(&["test", "--workspace"], &shell::FEATURES, &[])
+    ("cargo test", || cargo(&["test"], &shell::WORKSPACE, &[])),
+    ("cargo test of the steppers", || {
+        cargo(&["test"], &shell::STEPPERS, &[])
     }),
     ("audit", accuracy),
     ("determinism", || {
         determinism::run().map(|()| Outcome::Passed)
+    }),
+    ("clippy of the book", || {
+        cargo(&["clippy", "--all-targets"], &book::PACKAGE, &DENY)
+    }),
+    ("cargo test of the book", || {
+        cargo(&["test"], &book::PACKAGE, &[])
     }),
     ("book", || book::run().map(|()| Outcome::Passed)),
     ("cargo test of xtask", || cargo(&["test"], &XTASK, &[])),
@@ -91,6 +122,7 @@ const STEPS: [Step; 25] = [
     ("own vehicle", || {
         own_vehicle::run().map(|()| Outcome::Passed)
     }),
+    ("wheel", || wheel::run(false).map(|()| Outcome::Passed)),
     ("packages", || {
         packages::run(false).map(|()| Outcome::Passed)
     }),
@@ -198,11 +230,7 @@ fn generate_check() -> Result<Outcome, String> {
 /// The audit of accuracy with as few points as a gate can wait for, by the program that `cargo test` has built. What the oracle
 /// says of them stays in the cache until oracle or table change; what is generated is always compared with it.
 fn accuracy() -> Result<Outcome, String> {
-    cargo(
-        &["build", "--workspace", "--bin", "audit"],
-        &shell::FEATURES,
-        &[],
-    )?;
+    cargo(&["build", "--bin", "audit"], &shell::WORKSPACE, &[])?;
     let mut audit = shell::program(shell::target().join("debug/audit"));
     audit.args(["--points", "100", "--root"]).arg(shell::root());
     if let Some(cache) = python::cache()? {

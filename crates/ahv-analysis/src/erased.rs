@@ -4,6 +4,7 @@
 //! their names. It is compiled once for a model; what is written over it is compiled once for all.
 
 mod model;
+mod rows;
 mod steppers;
 
 use ahv_core::{
@@ -119,6 +120,9 @@ pub trait AnyModel: Send + Sync {
     fn fault(&self, p: &[f64], x: &[f64], u: &[f64]) -> Option<String>;
     /// The drift f(x, u).
     fn drift(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64>;
+    /// The drift at many points: writes that of each row of `x` into the row of `rates` in its place, with the bits of
+    /// [`Self::drift`]. `u` has one row for all, or one for each.
+    fn drifts(&self, p: &[f64], x: &[f64], u: &[f64], rates: &mut [f64]);
     /// ∂f/∂x and ∂f/∂u.
     fn jacobians(&self, p: &[f64], x: &[f64], u: &[f64]) -> [DMatrix<f64>; 2];
     /// ∂f/∂p.

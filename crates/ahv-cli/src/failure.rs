@@ -1,7 +1,7 @@
 //! How a command fails.
 
+use std::cell::RefCell;
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 /// Why a command failed, in words for the person at the terminal.
 #[derive(Debug)]
@@ -16,15 +16,43 @@ pub enum Failure {
 
 impl Failure {
     /// Says on stderr what went wrong and gives the exit code, `interrupted` for work that a signal ended.
-    pub(crate) fn report(&self, interrupted: u8) -> ExitCode {
+    pub(crate) fn report(&self, interrupted: u8) -> u8 {
         let (message, code) = match self {
             Self::Request(message) => (message, 2),
             Self::Numeric(message) => (message, 3),
             Self::Interrupted(message) => (message, interrupted),
         };
         complain(&format!("error: {message}"));
-        ExitCode::from(code)
+        code
     }
+}
+
+/// What a command says: to stdout, and beside that.
+#[derive(Debug, Default)]
+pub(crate) struct Said {
+    /// What it prints.
+    pub(crate) text: String,
+    /// Its notes and warnings.
+    pub(crate) notes: Vec<String>,
+}
+
+thread_local! {
+    /// What a command of this thread says, where a host program listens to it.
+    static HEARD: RefCell<Option<Said>> = const { RefCell::new(None) };
+}
+
+/// Does `work`, and hears what it says on this thread: nothing of that goes to stdout or stderr.
+pub(crate) fn heard<T>(work: impl FnOnce() -> T) -> (T, Said) {
+    HEARD.set(Some(Said::default()));
+    let outcome = work();
+    (outcome, HEARD.take().unwrap_or_default())
+}
+
+/// Whether somebody listens, who then has heard it.
+fn hear(tell: impl FnOnce(&mut Said)) -> bool {
+    HEARD
+        .with_borrow_mut(|said| said.as_mut().map(tell))
+        .is_some()
 }
 
 /// One outcome of many, each of which was tried whatever became of the others: of failures the first is the command's, and the
@@ -49,6 +77,9 @@ pub fn all<const N: usize>(outcomes: [Result<(), Failure>; N]) -> Result<(), Fai
 
 /// Writes a line to stderr. A closed stderr is no reason to stop.
 pub fn complain(message: &str) {
+    if hear(|said| said.notes.push(message.to_owned())) {
+        return;
+    }
     let _ = writeln!(io::stderr(), "{message}");
 }
 
@@ -58,6 +89,9 @@ pub fn complain(message: &str) {
 ///
 /// [`Failure::Request`] if stdout cannot be written for another reason.
 pub fn print(text: &str) -> Result<(), Failure> {
+    if hear(|said| said.text = format!("{}{text}\n", said.text)) {
+        return Ok(());
+    }
     let mut stdout = io::stdout();
     written(writeln!(stdout, "{text}").and_then(|()| stdout.flush()))
 }

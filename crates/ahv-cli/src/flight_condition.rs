@@ -21,7 +21,7 @@ const SHARE: f64 = 0.618;
 
 /// What is given of a steady state, and the inputs that are held.
 pub(crate) struct FlightCondition {
-    /// Given states and outputs, as they stand on the command line.
+    /// Given states and outputs; angles in rad.
     given: Vec<(&'static str, f64)>,
     input: Vec<String>,
 }
@@ -49,9 +49,19 @@ fn all_given() -> Vec<(Given, [&'static str; 2])> {
     all
 }
 
-/// Reads what is given of a state, whose unit is not written.
+/// Reads what is given of a state, whose unit is not written; an angle is in deg, unless it says that it is in rad.
 fn finite(text: &str, [unit, si]: [&str; 2]) -> Result<f64, String> {
-    let unit = if is_angle(unit) { "deg" } else { unit };
+    if is_angle(unit) {
+        let in_rad = text.strip_suffix("rad").and_then(|it| it.parse().ok());
+        return match in_rad.filter(|it: &f64| it.is_finite()) {
+            Some(angle) => Ok(angle),
+            None => number(text, ["deg", "deg"]).map(f64::to_radians),
+        };
+    }
+    number(text, [unit, si])
+}
+
+fn number(text: &str, [unit, si]: [&str; 2]) -> Result<f64, String> {
     let written = [unit, si]
         .into_iter()
         .find_map(|unit| text.strip_suffix(unit));
@@ -195,8 +205,7 @@ impl FlightCondition {
                     vehicle.name()
                 )));
             }
-            let is_angle = is_angle(vehicle.unit(name));
-            flight = flight.with(name, if is_angle { value.to_radians() } else { value });
+            flight = flight.with(name, value);
         }
         for (name, value) in inputs.iter() {
             flight = flight.holding(name, value);

@@ -1,7 +1,5 @@
 //! `ahv generate`: the command line and the act itself are those of `ahv-generate`.
 
-use std::process::ExitCode;
-
 use ahv_analysis::erased::AnyModel;
 use ahv_generate::Values;
 use nalgebra::DMatrix;
@@ -11,8 +9,8 @@ use crate::registry;
 pub(crate) use ahv_generate::Args as Arguments;
 
 /// Runs the command, which says for itself what it did or why it failed.
-pub(crate) fn run(arguments: &Arguments) -> ExitCode {
-    ahv_generate::run_with(arguments, &evaluate).into()
+pub(crate) fn run(arguments: &Arguments) -> u8 {
+    ahv_generate::run_with(arguments, &evaluate)
 }
 
 /// What the compiled functions of a model give at a point, for an audit; `None` if this program does not know the model.

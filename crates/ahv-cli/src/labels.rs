@@ -7,11 +7,11 @@ use crate::show::show;
 
 /// Names and units of the components of a vector.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Labels {
+pub struct Labels {
     /// Names, in order.
-    pub(crate) names: &'static [&'static str],
+    pub names: &'static [&'static str],
     /// Units; `1` where there is none.
-    pub(crate) units: &'static [&'static str],
+    pub units: &'static [&'static str],
 }
 
 impl Labels {

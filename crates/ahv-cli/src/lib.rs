@@ -28,6 +28,7 @@ mod assignment;
 mod covariance;
 pub mod csv_file;
 mod disperse;
+pub mod embedded;
 pub mod failure;
 mod flight_condition;
 mod flights;
@@ -35,7 +36,7 @@ mod forces;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
-mod labels;
+pub mod labels;
 mod linearize;
 mod lqr;
 mod monte_carlo;
@@ -55,9 +56,10 @@ mod simulate;
 pub mod steps;
 mod table;
 mod trim;
-mod units;
-mod vehicle;
+pub mod units;
+pub mod vehicle;
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -124,33 +126,59 @@ impl ExtraCommand {
 /// The program `ahv` over the models `L`, with `extra` commands beside the general ones: reads the command line of this process, runs what it
 /// asks for, and gives the exit code.
 pub fn run<L: ModelList>(extra: &[ExtraCommand]) -> ExitCode {
+    run_line::<L>(std::env::args_os(), extra).into()
+}
+
+/// As [`run`] for another command line, whose first word is the program's name, and with the exit code as a number.
+pub fn run_line<L: ModelList>(
+    line: impl IntoIterator<Item = OsString>,
+    extra: &[ExtraCommand],
+) -> u8 {
     registry::register::<L>();
-    let mut matches = match command(extra).try_get_matches() {
-        Ok(matches) => matches,
-        Err(asked) => return answer(&asked),
-    };
-    if let Some((name, matches)) = matches.subcommand()
-        && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
-    {
-        return listening(|| (extra.run)(matches));
-    }
-    let cli = Cli::from_arg_matches_mut(&mut matches);
-    match cli.unwrap_or_else(|error| error.exit()).command {
+    match asked(line, extra) {
+        Err(asked) => answer(&asked),
         // They handle signals themselves.
         #[cfg(feature = "generate")]
-        Command::Generate(arguments) => generate::run(&arguments),
+        Ok(Asked::General(Command::Generate(arguments))) => generate::run(&arguments),
         #[cfg(feature = "generate")]
-        Command::New(arguments) => new::run(&arguments),
-        Command::Model(command) => listening(|| command.run()),
+        Ok(Asked::General(Command::New(arguments))) => new::run(&arguments),
+        Ok(Asked::General(Command::Model(command))) => listening(|| command.run()),
+        Ok(Asked::Extra(extra, matches)) => listening(|| (extra.run)(&matches)),
     }
 }
 
+/// What a command line asks for.
+enum Asked<'e> {
+    General(Command),
+    Extra(&'e ExtraCommand, ArgMatches),
+}
+
+/// Reads a command line.
+///
+/// # Errors
+///
+/// What is wrong with it, or the help or version that it asks for.
+fn asked(
+    line: impl IntoIterator<Item = OsString>,
+    extra: &[ExtraCommand],
+) -> Result<Asked<'_>, clap::Error> {
+    let mut matches = command(extra).try_get_matches_from(line)?;
+    if let Some((name, matches)) = matches.subcommand()
+        && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
+    {
+        return Ok(Asked::Extra(extra, matches.clone()));
+    }
+    Ok(Asked::General(
+        Cli::from_arg_matches_mut(&mut matches)?.command,
+    ))
+}
+
 /// Prints help, the version, or what is wrong with the command line.
-fn answer(asked: &clap::Error) -> ExitCode {
+fn answer(asked: &clap::Error) -> u8 {
     let printed = asked.print().and_then(|()| io::stdout().flush());
     match written(printed) {
         Err(failure) if !asked.use_stderr() => failure.report(signals::exit_code()),
-        _ => ExitCode::from(u8::try_from(asked.exit_code()).unwrap_or(2)),
+        _ => u8::try_from(asked.exit_code()).unwrap_or(2),
     }
 }
 
@@ -163,9 +191,9 @@ fn command(extra: &[ExtraCommand]) -> clap::Command {
     })
 }
 
-fn listening(run: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
+fn listening(run: impl FnOnce() -> Result<(), Failure>) -> u8 {
     match signals::listen().and_then(|()| run()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => failure.report(signals::exit_code()),
     }
 }

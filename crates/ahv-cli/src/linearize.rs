@@ -84,7 +84,7 @@ impl Vehicle {
     /// # Errors
     ///
     /// [`Failure::Request`] for an unknown input or output, [`Failure::Numeric`] for a derivative that is not finite.
-    pub(crate) fn linear(
+    pub fn linear(
         &self,
         point: (&[f64], &[f64]),
         inputs: &[String],

@@ -56,16 +56,21 @@ pub(crate) fn listen() -> Result<(), Failure> {
 
 fn obey(signal: usize) {
     STOPPED_BY.store(signal, Ordering::Relaxed);
-    let work = STOPPABLE
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .take();
-    match work {
-        Some(control) => control.stop.store(true, Ordering::Relaxed),
-        None => {
-            complain("interrupted");
-            output::exit_without_temporaries(exit_code());
+    if !stop() {
+        complain("interrupted");
+        output::exit_without_temporaries(exit_code());
+    }
+}
+
+/// Stops the work that can be stopped in order, and says whether there is any.
+pub fn stop() -> bool {
+    let mut stoppable = STOPPABLE.lock().unwrap_or_else(PoisonError::into_inner);
+    match stoppable.take() {
+        Some(control) => {
+            control.stop.store(true, Ordering::Relaxed);
+            true
         }
+        None => false,
     }
 }
 

@@ -8,7 +8,7 @@ use crate::labels::Labels;
 
 /// A system of units, for inputs, results, and the model itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Units {
+pub enum Units {
     /// Foot, slug, second, radian
     #[value(name = "ft-slug-s-rad")]
     FootSlug,
@@ -19,7 +19,7 @@ pub(crate) enum Units {
 
 impl Units {
     /// The name, as command lines have it and tables say it of themselves.
-    pub(crate) const fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::FootSlug => "ft-slug-s-rad",
             Self::Si => "si",
@@ -36,7 +36,7 @@ impl Units {
     }
 
     /// Names and units of these components.
-    pub(crate) const fn labels(self, components: Components) -> Labels {
+    pub const fn labels(self, components: Components) -> Labels {
         Labels {
             names: components.names,
             units: match self {

@@ -130,25 +130,31 @@ impl clap::Args for VehicleArgs {
 }
 
 /// A model in its condition.
-pub(crate) struct Vehicle {
-    pub(crate) model: &'static dyn AnyModel,
-    pub(crate) units: Units,
+pub struct Vehicle {
+    /// The model.
+    pub model: &'static dyn AnyModel,
+    /// The system in which it is run.
+    pub units: Units,
     /// Table that the values come from, if they are not those that the model was generated with.
-    pub(crate) table: Option<PathBuf>,
+    pub table: Option<PathBuf>,
     /// Set of parameters.
-    pub(crate) set: Cow<'static, str>,
+    pub set: Cow<'static, str>,
     /// Choices that the model has, each with what is chosen; a table may hold a mixture that has no name.
-    pub(crate) choices: Vec<(&'static str, Option<&'static str>)>,
+    pub choices: Vec<(&'static str, Option<&'static str>)>,
     /// The parameters of the model.
-    pub(crate) parameters: Vec<f64>,
+    pub parameters: Vec<f64>,
     /// Their relative uncertainties.
-    pub(crate) uncertainty: Vec<f64>,
-    pub(crate) state_bounds: Vec<Bounds>,
-    pub(crate) input_bounds: Vec<Bounds>,
-    pub(crate) states: Labels,
-    pub(crate) inputs: Labels,
+    pub uncertainty: Vec<f64>,
+    /// Where its curve fits are meant to be used.
+    pub state_bounds: Vec<Bounds>,
+    /// The same of the inputs.
+    pub input_bounds: Vec<Bounds>,
+    /// Names and units of its states.
+    pub states: Labels,
+    /// Of its inputs.
+    pub inputs: Labels,
     /// Of the quantities that people look at.
-    pub(crate) outputs: Labels,
+    pub outputs: Labels,
 }
 
 /// Which model an outcome is of: what the JSON of every command that takes a vehicle begins with.

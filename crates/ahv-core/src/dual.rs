@@ -120,14 +120,6 @@ impl<R: Real> Real for Dual<R> {
         (self.through(sin, cos), self.through(cos, -sin))
     }
 
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
     fn exp(self) -> Self {
         let value = self.value.exp();
         self.through(value, value)

@@ -79,14 +79,18 @@ pub enum Failure {
 }
 
 impl Failure {
-    pub(crate) fn new(message: impl Into<String>) -> Self {
+    /// What happened, in words.
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Self {
         Self::Other {
             message: message.into(),
             help: None,
         }
     }
 
-    pub(crate) fn with_help(self, help: impl Into<String>) -> Self {
+    /// The same, with what to do about it.
+    #[must_use]
+    pub fn with_help(self, help: impl Into<String>) -> Self {
         match self {
             Self::Other { message, .. } => Self::Other {
                 message,
@@ -97,7 +101,7 @@ impl Failure {
     }
 
     /// For `map_err`: what could not be done to which path.
-    pub(crate) fn file(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+    pub fn file(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let message = format!("cannot {deed} {}", path.display());
         move |error| Self::new(format!("{message}: {error}"))
     }

@@ -52,6 +52,19 @@ enum DiagnosticPart {
 }
 
 impl Diagnostic {
+    /// A fault of a line of a family's file, which is named relative to the folder of the tables.
+    pub(crate) fn of_line(file: &str, line: usize, message: String) -> Self {
+        Self {
+            rule: "family".to_owned(),
+            file: file.to_owned(),
+            path: Vec::new(),
+            part: DiagnosticPart::Key,
+            message,
+            help: None,
+            line: Some(line),
+        }
+    }
+
     /// A fault of the value at a path.
     pub(crate) fn of_value(rule: &str, table: &Table, path: &[&str], message: &str) -> Self {
         Self {

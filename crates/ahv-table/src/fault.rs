@@ -84,7 +84,7 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
-/// The nearest of the known words, or all of them.
+/// The nearest of the known words, or all of them, if there are any.
 pub(crate) fn suggestion(word: &str, known: &[&str]) -> String {
     const SIMILAR: f64 = 0.8;
     let word = word.to_lowercase();
@@ -95,6 +95,7 @@ pub(crate) fn suggestion(word: &str, known: &[&str]) -> String {
         .max_by(|a, b| a.0.total_cmp(&b.0));
     match nearest {
         Some((_, nearest)) => format!("did you mean `{nearest}`?"),
+        None if known.is_empty() => "nothing is known here".to_owned(),
         None => format!("known here: `{}`", known.join("`, `")),
     }
 }

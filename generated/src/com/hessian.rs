@@ -30,7 +30,6 @@ ahv_core::entries! {
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
 fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to velocity
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
     hessian.velocity.velocity.velocity = -d2_drag_d_velocity_d_velocity * p.inv_m; // 1/ft
     let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
@@ -45,7 +44,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
         * p.inv_effective_inertia; // rad/ft^2
     hessian.eta_dot_1.velocity.velocity = -p.psi_1 * hessian.pitch_rate.velocity.velocity; // slug^0.5/ft^1.5
     hessian.eta_dot_2.velocity.velocity = -p.psi_2 * hessian.pitch_rate.velocity.velocity; // slug^0.5/ft^1.5
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -54,7 +52,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
 fn hessian_by_altitude<R: Real>(
     hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
@@ -99,7 +96,6 @@ fn hessian_by_altitude<R: Real>(
     hessian.eta_dot_1.altitude.altitude = -p.psi_1 * hessian.pitch_rate.altitude.altitude; // slug^0.5/ft^1.5/s^2
     hessian.eta_dot_2.altitude.velocity = -p.psi_2 * hessian.pitch_rate.altitude.velocity; // slug^0.5/ft^1.5/s
     hessian.eta_dot_2.altitude.altitude = -p.psi_2 * hessian.pitch_rate.altitude.altitude; // slug^0.5/ft^1.5/s^2
-
     hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
     hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
@@ -107,7 +103,6 @@ fn hessian_by_altitude<R: Real>(
 /// Entries of [`hessian_values`]: derivatives by gamma.
 #[inline(always)]
 fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to gamma
     hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
     hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
     hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
@@ -115,7 +110,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
     hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
     hessian.altitude.gamma.velocity = i.cos_gamma;
     hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
     hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
@@ -127,7 +121,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
 fn hessian_by_alpha<R: Real>(
     hessian: &mut HessianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to alpha
     let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
     hessian.velocity.alpha.velocity = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
     let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
@@ -171,7 +164,6 @@ fn hessian_by_alpha<R: Real>(
     hessian.eta_dot_2.alpha.altitude = -p.psi_2 * hessian.pitch_rate.alpha.altitude; // slug^0.5/ft^0.5/s^2/rad
     hessian.eta_dot_2.alpha.alpha = R::TWO * p.n_2_alpha_2
         - p.psi_2 * hessian.pitch_rate.alpha.alpha; // (ft*slug)^0.5/s^2/rad^2
-
     hessian.alpha.alpha.velocity = -hessian.gamma.alpha.velocity;
     hessian.alpha.alpha.altitude = -hessian.gamma.alpha.altitude;
     hessian.alpha.alpha.alpha = -hessian.gamma.alpha.alpha;

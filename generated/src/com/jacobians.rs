@@ -34,13 +34,11 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, pitch_rate, eta_1,
-/// eta_dot_1, eta_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-fn jacobians_by_velocity_to_eta_2<R: Real>(
-    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+fn jacobians_by_velocity<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
     state.velocity.velocity = -d_drag_d_velocity * p.inv_m; // 1/s
     let d_force_turn_d_velocity = i.c_l * s.d_turn_factor_d_velocity
@@ -50,8 +48,15 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_effective_inertia; // rad/s/ft
     state.eta_dot_1.velocity = -p.psi_1 * state.pitch_rate.velocity; // slug^0.5/ft^0.5/s
     state.eta_dot_2.velocity = -p.psi_2 * state.pitch_rate.velocity; // slug^0.5/ft^0.5/s
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+}
 
-    // Derivatives with respect to altitude
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
     state.velocity.altitude = -(i.sin_gamma * s.d_gravity_d_altitude + d_drag_d_altitude * p.inv_m); // 1/s^2
     let d_force_turn_d_altitude = i.c_l * s.d_turn_factor_d_altitude; // rad/s/ft
@@ -60,12 +65,23 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_effective_inertia; // rad/s^2/ft
     state.eta_dot_1.altitude = -p.psi_1 * state.pitch_rate.altitude; // slug^0.5/ft^0.5/s^2
     state.eta_dot_2.altitude = -p.psi_2 * state.pitch_rate.altitude; // slug^0.5/ft^0.5/s^2
+    state.alpha.altitude = -state.gamma.altitude;
+}
 
-    // Derivatives with respect to gamma
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.alpha.gamma = -state.gamma.gamma;
+}
 
-    // Derivatives with respect to alpha
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
     let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
         + i.cos_alpha * s.d_thrust_d_alpha
@@ -82,52 +98,63 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
             - p.psi_2 * d_generalized_force_2_d_alpha); // 1/s^2
     state.eta_dot_1.alpha = d_generalized_force_1_d_alpha - p.psi_1 * state.pitch_rate.alpha; // (ft*slug)^0.5/s^2/rad
     state.eta_dot_2.alpha = d_generalized_force_2_d_alpha - p.psi_2 * state.pitch_rate.alpha; // (ft*slug)^0.5/s^2/rad
-
-    state.altitude.velocity = i.sin_gamma;
-    state.alpha.velocity = -state.gamma.velocity;
-    state.alpha.altitude = -state.gamma.altitude;
-    state.altitude.gamma = s.d_altitude_rate_d_gamma;
-    state.alpha.gamma = -state.gamma.gamma;
     state.alpha.alpha = -state.gamma.alpha;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(state: &mut StateJacobianEntries<R>) {
     state.alpha.pitch_rate = R::ONE;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by eta.
+#[inline(always)]
+fn jacobians_by_eta<R: Real>(state: &mut StateJacobianEntries<R>, p: &Prepared<R>) {
     state.pitch_rate.eta_1 = p.d_pitch_acceleration_d_eta_1;
-    state.eta_dot_1.eta_1 = p.d_eta_acceleration_1_d_eta_1;
-    state.eta_dot_2.eta_1 = p.d_eta_acceleration_2_d_eta_1;
-    state.pitch_rate.eta_dot_1 = p.d_pitch_acceleration_d_eta_dot_1;
-    state.eta_1.eta_dot_1 = R::ONE;
-    state.eta_dot_1.eta_dot_1 = p.d_eta_acceleration_1_d_eta_dot_1;
-    state.eta_dot_2.eta_dot_1 = p.d_eta_acceleration_2_d_eta_dot_1;
     state.pitch_rate.eta_2 = p.d_pitch_acceleration_d_eta_2;
+    state.eta_dot_1.eta_1 = p.d_eta_acceleration_1_d_eta_1;
     state.eta_dot_1.eta_2 = p.d_eta_acceleration_1_d_eta_2;
+    state.eta_dot_2.eta_1 = p.d_eta_acceleration_2_d_eta_1;
     state.eta_dot_2.eta_2 = p.d_eta_acceleration_2_d_eta_2;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by eta_dot_2, phi, delta_e.
+/// Entries of [`jacobians_values`]: derivatives by eta_dot.
 #[inline(always)]
-fn jacobians_by_eta_dot_2_to_delta_e<R: Real>(
-    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>,
+fn jacobians_by_eta_dot<R: Real>(state: &mut StateJacobianEntries<R>, p: &Prepared<R>) {
+    state.pitch_rate.eta_dot_1 = p.d_pitch_acceleration_d_eta_dot_1;
+    state.pitch_rate.eta_dot_2 = p.d_pitch_acceleration_d_eta_dot_2;
+    state.eta_1.eta_dot_1 = R::ONE;
+    state.eta_dot_1.eta_dot_1 = p.d_eta_acceleration_1_d_eta_dot_1;
+    state.eta_dot_1.eta_dot_2 = p.d_eta_acceleration_1_d_eta_dot_2;
+    state.eta_2.eta_dot_2 = R::ONE;
+    state.eta_dot_2.eta_dot_1 = p.d_eta_acceleration_2_d_eta_dot_1;
+    state.eta_dot_2.eta_dot_2 = p.d_eta_acceleration_2_d_eta_dot_2;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi.
+#[inline(always)]
+fn jacobians_by_phi<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to phi
     input.pitch_rate.phi = p.z_t_over_effective_inertia * i.thrust_phi; // rad/s^2
     input.eta_dot_1.phi = -p.psi_1 * input.pitch_rate.phi; // (ft*slug)^0.5/s^2
     input.eta_dot_2.phi = -p.psi_2 * input.pitch_rate.phi; // (ft*slug)^0.5/s^2
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.alpha.phi = -s.d_force_turn_d_phi;
+}
 
-    // Derivatives with respect to delta_e
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     input.alpha.delta_e = -i.turn_factor * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_delta_e; // lb/rad
     input.pitch_rate.delta_e = p.inv_effective_inertia
         * (d_pitching_moment_d_delta_e - p.psi_2_n_2_delta_e); // 1/s^2
     input.eta_dot_1.delta_e = -p.psi_1 * input.pitch_rate.delta_e; // (ft*slug)^0.5/s^2/rad
     input.eta_dot_2.delta_e = p.n_2_delta_e - p.psi_2 * input.pitch_rate.delta_e; // (ft*slug)^0.5/s^2/rad
-
-    state.pitch_rate.eta_dot_2 = p.d_pitch_acceleration_d_eta_dot_2;
-    state.eta_dot_1.eta_dot_2 = p.d_eta_acceleration_1_d_eta_dot_2;
-    state.eta_2.eta_dot_2 = R::ONE;
-    state.eta_dot_2.eta_dot_2 = p.d_eta_acceleration_2_d_eta_dot_2;
-    input.velocity.phi = s.d_velocity_rate_d_phi;
-    input.gamma.phi = s.d_force_turn_d_phi;
-    input.alpha.phi = -s.d_force_turn_d_phi;
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.gamma.delta_e = i.turn_factor * p.c_l_delta_e;
 }
@@ -139,8 +166,15 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_eta_2(&mut state, x, p, i, s);
-    jacobians_by_eta_dot_2_to_delta_e(&mut state, &mut input, p, i, s);
+    jacobians_by_velocity(&mut state, p, i, s);
+    jacobians_by_altitude(&mut state, p, i, s);
+    jacobians_by_gamma(&mut state, i, s);
+    jacobians_by_alpha(&mut state, x, p, i, s);
+    jacobians_by_pitch_rate(&mut state);
+    jacobians_by_eta(&mut state, p);
+    jacobians_by_eta_dot(&mut state, p);
+    jacobians_by_phi(&mut input, p, i, s);
+    jacobians_by_delta_e(&mut input, p, i, s);
     (state, input)
 }
 

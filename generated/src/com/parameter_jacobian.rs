@@ -2,10 +2,7 @@
 
 //! Functions of COM. Units are foot, slug, second and radian.
 
-use super::{
-    Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes, State, intermediates,
-    sensitivities, slopes,
-};
+use super::{Input, Intermediates, ParameterJacobian, Parameters, Prepared, Slopes, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
@@ -41,18 +38,37 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle, environment.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
-fn parameter_jacobian_by_vehicle_environment<R: Real>(
+fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-    q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     parameter.gamma.m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
         + i.c_l * s.d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
     parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_effective_inertia; // rad/s^2/slug/ft
     parameter.eta_dot_1.i_yy = -p.psi_1 * parameter.pitch_rate.i_yy; // 1/ft^0.5/slug^0.5/s^2
     parameter.eta_dot_2.i_yy = -p.psi_2 * parameter.pitch_rate.i_yy; // 1/ft^0.5/slug^0.5/s^2
+    parameter.velocity.m = -i.path_force * p.inv_m_2;
+    parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
+    parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
+    parameter.alpha.m = -parameter.gamma.m;
+    parameter.alpha.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
+    parameter.pitch_rate.s = i.c_m * p.c_bar_over_effective_inertia * i.dynamic_pressure;
+    parameter.pitch_rate.c_bar = i.c_m * i.reference_force * p.inv_effective_inertia;
+    parameter.pitch_rate.z_t = i.thrust * p.inv_effective_inertia;
+    parameter.eta_dot_1.s = -p.psi_1_c_bar_over_effective_inertia * i.c_m * i.dynamic_pressure;
+    parameter.eta_dot_1.c_bar = -p.psi_1_over_effective_inertia * i.c_m * i.reference_force;
+    parameter.eta_dot_1.z_t = -p.psi_1_over_effective_inertia * i.thrust;
+    parameter.eta_dot_2.s = -p.psi_2_c_bar_over_effective_inertia * i.c_m * i.dynamic_pressure;
+    parameter.eta_dot_2.c_bar = -p.psi_2_over_effective_inertia * i.c_m * i.reference_force;
+    parameter.eta_dot_2.z_t = -p.psi_2_over_effective_inertia * i.thrust;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment.
+#[inline(always)]
+fn parameter_jacobian_by_environment<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
@@ -77,32 +93,18 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
     parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_effective_inertia; // rad/s^2/ft
     parameter.eta_dot_1.h_s = -p.psi_1 * parameter.pitch_rate.h_s; // slug^0.5/ft^0.5/s^2
     parameter.eta_dot_2.h_s = -p.psi_2 * parameter.pitch_rate.h_s; // slug^0.5/ft^0.5/s^2
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
-                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
+                - p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
             + x.velocity * p.earth_curvature_2
-                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
+                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-
-    parameter.velocity.m = -i.path_force * p.inv_m_2;
-    parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
-    parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
-    parameter.alpha.m = -parameter.gamma.m;
-    parameter.alpha.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
-    parameter.pitch_rate.s = i.c_m * p.c_bar_over_effective_inertia * i.dynamic_pressure;
-    parameter.pitch_rate.c_bar = i.c_m * i.reference_force * p.inv_effective_inertia;
-    parameter.pitch_rate.z_t = i.thrust * p.inv_effective_inertia;
-    parameter.eta_dot_1.s = -p.psi_1_c_bar_over_effective_inertia * i.c_m * i.dynamic_pressure;
-    parameter.eta_dot_1.c_bar = -p.psi_1_over_effective_inertia * i.c_m * i.reference_force;
-    parameter.eta_dot_1.z_t = -p.psi_1_over_effective_inertia * i.thrust;
-    parameter.eta_dot_2.s = -p.psi_2_c_bar_over_effective_inertia * i.c_m * i.dynamic_pressure;
-    parameter.eta_dot_2.c_bar = -p.psi_2_over_effective_inertia * i.c_m * i.reference_force;
-    parameter.eta_dot_2.z_t = -p.psi_2_over_effective_inertia * i.thrust;
     parameter.velocity.rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2 * i.density_ratio;
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
-        * q.slope_of_radius_ratio_in_earth_curvature;
+        * slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma.rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
     parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
     parameter.alpha.rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio;
@@ -117,24 +119,28 @@ fn parameter_jacobian_by_vehicle_environment<R: Real>(
         * i.density_ratio;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by choices, t, c_d, c_l.
+/// Entries of [`parameter_jacobian_values`]: derivatives by choices.
 #[inline(always)]
-fn parameter_jacobian_by_choices_to_c_l<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    q: &Sensitivities<R>,
+fn parameter_jacobian_by_choices<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
-    // Derivatives with respect to parameters
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
-            * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
+            * (p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
                 - x.velocity)
-            - x.velocity * p.earth_curvature
-                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
-        * q.slope_of_radius_ratio_in_earth_curvature;
+        * slope_of_radius_ratio_in_earth_curvature;
     parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by t.
+#[inline(always)]
+fn parameter_jacobian_by_t<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
     parameter.velocity.t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
     parameter.velocity.t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
@@ -183,11 +189,25 @@ fn parameter_jacobian_by_choices_to_c_l<R: Real>(
     parameter.eta_dot_2.t_alpha_2 = -p.psi_2_z_t_over_effective_inertia * i.alpha_2;
     parameter.eta_dot_2.t_alpha = -p.psi_2_z_t_over_effective_inertia * x.alpha;
     parameter.eta_dot_2.t_0 = p.minus_psi_2_z_t_over_effective_inertia;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
     parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
     parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
     parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
     parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
+#[inline(always)]
+fn parameter_jacobian_by_c_l<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, i: &Intermediates<R>,
+) {
     parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
     parameter.gamma.c_l_delta_e = i.turn_factor * u.delta_e;
     parameter.gamma.c_l_0 = i.turn_factor;
@@ -196,13 +216,11 @@ fn parameter_jacobian_by_choices_to_c_l<R: Real>(
     parameter.alpha.c_l_0 = -i.turn_factor;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by modes, c_m, n_1.
+/// Entries of [`parameter_jacobian_values`]: derivatives by modes.
 #[inline(always)]
-fn parameter_jacobian_by_modes_to_n_1<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    q: &Sensitivities<R>,
+fn parameter_jacobian_by_modes<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_modal_load_1_d_omega_1 = -(x.eta_dot_1 * p.two_zeta_1 + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
     parameter.pitch_rate.omega_1 = -p.psi_1_over_effective_inertia * d_modal_load_1_d_omega_1; // 1/s
     // ft^0.5*slug^0.5/s/rad
@@ -225,13 +243,17 @@ fn parameter_jacobian_by_modes_to_n_1<R: Real>(
         * (i.pitch_acceleration * p.two_psi_2 - i.modal_load_2); // rad/s^2/ft^0.5/slug^0.5
     parameter.eta_dot_1.psi_2 = -p.psi_1 * parameter.pitch_rate.psi_2; // 1/s^2
     parameter.eta_dot_2.psi_2 = -(i.pitch_acceleration + p.psi_2 * parameter.pitch_rate.psi_2); // 1/s^2
-    parameter.eta_dot_1.n_1_alpha_2 = i.alpha_2 + p.psi_1_2_over_effective_inertia * i.alpha_2; // rad^2
-    parameter.eta_dot_1.n_1_alpha = x.alpha + p.psi_1_2_over_effective_inertia * x.alpha; // rad
-
     parameter.pitch_rate.zeta_1 = p.two_psi_1_omega_1_over_effective_inertia * x.eta_dot_1;
     parameter.pitch_rate.zeta_2 = p.two_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
     parameter.eta_dot_1.zeta_2 = p.minus_two_psi_1_psi_2_omega_2_over_effective_inertia * x.eta_dot_2;
     parameter.eta_dot_2.zeta_1 = p.minus_two_psi_2_psi_1_omega_1_over_effective_inertia * x.eta_dot_1;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_effective_inertia * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_effective_inertia * x.alpha;
     parameter.pitch_rate.c_m_delta_e = i.reference_force * p.c_bar_over_effective_inertia * u.delta_e;
@@ -244,34 +266,33 @@ fn parameter_jacobian_by_modes_to_n_1<R: Real>(
     parameter.eta_dot_2.c_m_alpha = -p.psi_2_c_bar_over_effective_inertia * i.reference_force * x.alpha;
     parameter.eta_dot_2.c_m_delta_e = -p.psi_2_c_bar_over_effective_inertia * i.reference_force * u.delta_e;
     parameter.eta_dot_2.c_m_0 = -p.psi_2_c_bar_over_effective_inertia * i.reference_force;
-    parameter.pitch_rate.n_1_alpha_2 = -p.psi_1_over_effective_inertia * i.alpha_2;
-    parameter.pitch_rate.n_1_alpha = -p.psi_1_over_effective_inertia * x.alpha;
-    parameter.pitch_rate.n_1_0 = p.minus_psi_1_over_effective_inertia;
-    parameter.eta_dot_1.n_1_0 = p.d_eta_acceleration_1_d_n_1_0;
-    parameter.eta_dot_2.n_1_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
-    parameter.eta_dot_2.n_1_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
-    parameter.eta_dot_2.n_1_0 = p.psi_1_psi_2_over_effective_inertia;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by n_2.
+/// Entries of [`parameter_jacobian_values`]: derivatives by n.
 #[inline(always)]
-fn parameter_jacobian_by_n_2<R: Real>(
+fn parameter_jacobian_by_n<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
+    parameter.eta_dot_1.n_1_alpha_2 = i.alpha_2 + p.psi_1_2_over_effective_inertia * i.alpha_2; // rad^2
+    parameter.eta_dot_1.n_1_alpha = x.alpha + p.psi_1_2_over_effective_inertia * x.alpha; // rad
     parameter.eta_dot_2.n_2_alpha_2 = i.alpha_2 + p.psi_2_2_over_effective_inertia * i.alpha_2; // rad^2
     parameter.eta_dot_2.n_2_alpha = x.alpha + p.psi_2_2_over_effective_inertia * x.alpha; // rad
     parameter.eta_dot_2.n_2_delta_e = u.delta_e + p.psi_2_2_over_effective_inertia * u.delta_e; // rad
-
+    parameter.eta_dot_1.n_2_alpha_2 = p.psi_1_psi_2_over_effective_inertia * i.alpha_2;
+    parameter.eta_dot_1.n_2_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
+    parameter.pitch_rate.n_1_alpha_2 = -p.psi_1_over_effective_inertia * i.alpha_2;
+    parameter.pitch_rate.n_1_alpha = -p.psi_1_over_effective_inertia * x.alpha;
+    parameter.pitch_rate.n_1_0 = p.minus_psi_1_over_effective_inertia;
     parameter.pitch_rate.n_2_alpha_2 = -p.psi_2_over_effective_inertia * i.alpha_2;
     parameter.pitch_rate.n_2_alpha = -p.psi_2_over_effective_inertia * x.alpha;
     parameter.pitch_rate.n_2_delta_e = -p.psi_2_over_effective_inertia * u.delta_e;
     parameter.pitch_rate.n_2_0 = p.minus_psi_2_over_effective_inertia;
-    parameter.eta_dot_1.n_2_alpha_2 = q.psi_1_psi_2_over_effective_inertia_alpha_2;
-    parameter.eta_dot_1.n_2_alpha = q.psi_1_psi_2_over_effective_inertia_alpha;
+    parameter.eta_dot_1.n_1_0 = p.d_eta_acceleration_1_d_n_1_0;
     parameter.eta_dot_1.n_2_delta_e = p.psi_1_psi_2_over_effective_inertia * u.delta_e;
     parameter.eta_dot_1.n_2_0 = p.psi_1_psi_2_over_effective_inertia;
+    parameter.eta_dot_2.n_1_alpha_2 = parameter.eta_dot_1.n_2_alpha_2;
+    parameter.eta_dot_2.n_1_alpha = parameter.eta_dot_1.n_2_alpha;
+    parameter.eta_dot_2.n_1_0 = p.psi_1_psi_2_over_effective_inertia;
     parameter.eta_dot_2.n_2_0 = p.d_eta_acceleration_2_d_n_2_0;
 }
 
@@ -284,12 +305,16 @@ fn parameter_jacobian_by_n_2<R: Real>(
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
-    let q = sensitivities(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-    parameter_jacobian_by_vehicle_environment(&mut parameter, x, p, &i, &s, &q);
-    parameter_jacobian_by_choices_to_c_l(&mut parameter, x, u, p, &i, &q);
-    parameter_jacobian_by_modes_to_n_1(&mut parameter, x, u, p, &i, &q);
-    parameter_jacobian_by_n_2(&mut parameter, x, u, p, &i, &q);
+    parameter_jacobian_by_vehicle(&mut parameter, x, p, &i, &s);
+    parameter_jacobian_by_environment(&mut parameter, x, p, &i);
+    parameter_jacobian_by_choices(&mut parameter, x, p, &i);
+    parameter_jacobian_by_t(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_c_d(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_c_l(&mut parameter, x, u, &i);
+    parameter_jacobian_by_modes(&mut parameter, x, p, &i);
+    parameter_jacobian_by_c_m(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_n(&mut parameter, x, u, p, &i);
     parameter
 }
 

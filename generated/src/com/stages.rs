@@ -215,31 +215,3 @@ pub fn slopes<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermed
     s.inverse_momentum_2 = i.inverse_momentum * i.inverse_momentum;
     s
 }
-
-ahv_core::record! {
-    /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
-    /// a description is what its name says: its formula and unit stand in [`sensitivities`].
-    pub struct Sensitivities<R> {
-        /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
-        /// Earth, 0 where it is flat, ft.
-        slope_of_radius_ratio_in_earth_curvature,
-        two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity, psi_1_psi_2_over_effective_inertia_alpha_2,
-        psi_1_psi_2_over_effective_inertia_alpha,
-    }
-}
-
-/// Computes [`Sensitivities`].
-#[inline(always)]
-pub fn sensitivities<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Sensitivities<R> {
-    let mut q = Sensitivities::splat(R::ZERO);
-
-    // Derivatives with respect to parameters
-    q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
-
-    // Further values
-    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
-    q.psi_1_psi_2_over_effective_inertia_alpha_2 = p.psi_1_psi_2_over_effective_inertia * i.alpha_2;
-    q.psi_1_psi_2_over_effective_inertia_alpha = p.psi_1_psi_2_over_effective_inertia * x.alpha;
-    q
-}

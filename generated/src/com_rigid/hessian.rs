@@ -25,16 +25,28 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`hessian_values`]: derivatives by velocity, altitude.
+/// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
-fn hessian_by_velocity_altitude<R: Real>(
-    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to velocity
+fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
     hessian.velocity.velocity.velocity = -d2_drag_d_velocity_d_velocity * p.inv_m; // 1/ft
+    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
+    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
+    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
+    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
+        * inverse_momentum_3; // rad*s/ft^2
+    hessian.gamma.velocity.velocity = d2_force_turn_d_velocity_d_velocity
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
+    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
+    hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
+    hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
+}
 
-    // Derivatives with respect to altitude
+/// Entries of [`hessian_values`]: derivatives by altitude.
+#[inline(always)]
+fn hessian_by_altitude<R: Real>(
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     let d2_drag_d_velocity_d_altitude = i.c_d * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
@@ -54,17 +66,6 @@ fn hessian_by_velocity_altitude<R: Real>(
     let d2_drag_d_altitude_d_altitude = i.c_d * d2_reference_force_d_altitude_d_altitude; // lb/ft^3
     hessian.velocity.altitude.altitude = -(i.sin_gamma * d2_gravity_d_altitude_d_altitude
         + d2_drag_d_altitude_d_altitude * p.inv_m); // 1/s^2/ft
-
-    // Derivatives with respect to velocity
-    let inv_velocity_3 = i.inv_velocity * s.inv_velocity_2;
-    let d2_gravity_turn_d_velocity_d_velocity = R::TWO * i.gravity * inv_velocity_3; // s/ft^2
-    let inverse_momentum_3 = i.inverse_momentum * s.inverse_momentum_2;
-    let d2_force_turn_d_velocity_d_velocity = i.thrust * i.sin_alpha * p.two_m_2
-        * inverse_momentum_3; // rad*s/ft^2
-    hessian.gamma.velocity.velocity = d2_force_turn_d_velocity_d_velocity
-        - i.cos_gamma * d2_gravity_turn_d_velocity_d_velocity; // rad*s/ft^2
-
-    // Derivatives with respect to altitude
     let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
     let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
@@ -78,44 +79,41 @@ fn hessian_by_velocity_altitude<R: Real>(
     let d2_force_turn_d_altitude_d_altitude = i.c_l * d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     hessian.gamma.altitude.altitude = d2_force_turn_d_altitude_d_altitude
         - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
-
-    // Derivatives with respect to velocity
-    let d2_pitching_moment_d_velocity_d_velocity = i.c_m * p.c_bar_s * i.density; // lb*s^2/ft^2
-    hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
-
-    // Derivatives with respect to altitude
     let d2_pitching_moment_d_velocity_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^2
     hessian.pitch_rate.altitude.velocity = d2_pitching_moment_d_velocity_d_altitude * p.inv_i_yy; // rad/s/ft^2
     let d2_pitching_moment_d_altitude_d_altitude = i.c_m * p.c_bar
         * d2_reference_force_d_altitude_d_altitude; // lb/ft^2
     hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
-
-    hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
     hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
     hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by gamma, alpha.
+/// Entries of [`hessian_values`]: derivatives by gamma.
 #[inline(always)]
-fn hessian_by_gamma_alpha<R: Real>(
+fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &Intermediates<R>, s: &Slopes<R>) {
+    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
+    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
+    hessian.altitude.gamma.velocity = i.cos_gamma;
+    hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
+    hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
+    hessian.alpha.gamma.gamma = -hessian.gamma.gamma.gamma;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha.
+#[inline(always)]
+fn hessian_by_alpha<R: Real>(
     hessian: &mut HessianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to alpha
     let d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha; // lb*s/ft^2/rad
     hessian.velocity.alpha.velocity = -d2_drag_d_velocity_d_alpha * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to gamma
-    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-
-    // Derivatives with respect to alpha
     let d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha; // lb/ft^2/rad
     hessian.velocity.alpha.altitude = -d2_drag_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to gamma
-    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-
-    // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_thrust_phi_d_alpha_d_alpha = p.six_t_phi_alpha_3 * x.alpha + R::TWO * p.t_phi_alpha_2; // lb/ft/rad^2
     let d2_thrust_d_alpha_d_alpha = p.six_t_alpha_3 * x.alpha
@@ -127,26 +125,9 @@ fn hessian_by_gamma_alpha<R: Real>(
         + i.cos_alpha * d2_thrust_d_alpha_d_alpha
         - d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     hessian.velocity.alpha.alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
-
-    // Derivatives with respect to gamma
-    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
-
-    // Derivatives with respect to alpha
     hessian.gamma.alpha.velocity = s.d_turn_factor_d_velocity * p.c_l_alpha
         - s.inverse_momentum_2 * p.m * (i.thrust * i.cos_alpha + i.sin_alpha * s.d_thrust_d_alpha); // 1/ft
-
-    // Derivatives with respect to gamma
-    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
-
-    // Derivatives with respect to alpha
     hessian.gamma.alpha.altitude = s.d_turn_factor_d_altitude * p.c_l_alpha; // 1/s/ft
-
-    // Derivatives with respect to gamma
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to alpha
     hessian.gamma.alpha.alpha = i.inverse_momentum
         * (R::TWO * i.cos_alpha * s.d_thrust_d_alpha
             + i.sin_alpha * d2_thrust_d_alpha_d_alpha
@@ -160,11 +141,6 @@ fn hessian_by_gamma_alpha<R: Real>(
     let d2_pitching_moment_d_alpha_d_alpha = p.z_t * d2_thrust_d_alpha_d_alpha
         + i.reference_force * p.two_c_bar_c_m_alpha_2; // lb/rad^2
     hessian.pitch_rate.alpha.alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
-
-    hessian.altitude.gamma.velocity = i.cos_gamma;
-    hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
-    hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
-    hessian.alpha.gamma.gamma = -hessian.gamma.gamma.gamma;
     hessian.alpha.alpha.velocity = -hessian.gamma.alpha.velocity;
     hessian.alpha.alpha.altitude = -hessian.gamma.alpha.altitude;
     hessian.alpha.alpha.alpha = -hessian.gamma.alpha.alpha;
@@ -180,8 +156,10 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> H
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let mut hessian = HessianEntries::splat(R::ZERO);
-    hessian_by_velocity_altitude(&mut hessian, x, p, &i, &s);
-    hessian_by_gamma_alpha(&mut hessian, x, u, p, &i, &s);
+    hessian_by_velocity(&mut hessian, p, &i, &s);
+    hessian_by_altitude(&mut hessian, x, p, &i, &s);
+    hessian_by_gamma(&mut hessian, x, &i, &s);
+    hessian_by_alpha(&mut hessian, x, u, p, &i, &s);
     hessian
 }
 

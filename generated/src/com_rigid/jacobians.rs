@@ -28,15 +28,11 @@ ahv_core::entries! {
     }
 }
 
-/// [`jacobians_values`] where its stages are computed already.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-pub fn jacobians_values_from<R: Real>(
-    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
-    let mut state = StateJacobianEntries::splat(R::ZERO);
-    let mut input = InputJacobianEntries::splat(R::ZERO);
-
-    // Derivatives with respect to velocity
+fn jacobians_by_velocity<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
     state.velocity.velocity = -d_drag_d_velocity * p.inv_m; // 1/s
     let d_force_turn_d_velocity = i.c_l * s.d_turn_factor_d_velocity
@@ -44,20 +40,38 @@ pub fn jacobians_values_from<R: Real>(
     state.gamma.velocity = d_force_turn_d_velocity - i.cos_gamma * s.d_gravity_turn_d_velocity; // rad/ft
     let d_pitching_moment_d_velocity = i.c_m * p.c_bar * s.d_reference_force_d_velocity; // lb*s/ft
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+}
 
-    // Derivatives with respect to altitude
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
     state.velocity.altitude = -(i.sin_gamma * s.d_gravity_d_altitude + d_drag_d_altitude * p.inv_m); // 1/s^2
     let d_force_turn_d_altitude = i.c_l * s.d_turn_factor_d_altitude; // rad/s/ft
     state.gamma.altitude = d_force_turn_d_altitude - i.cos_gamma * s.d_gravity_turn_d_altitude; // rad/s/ft
     let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb/ft
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    state.alpha.altitude = -state.gamma.altitude;
+}
 
-    // Derivatives with respect to gamma
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.alpha.gamma = -state.gamma.gamma;
+}
 
-    // Derivatives with respect to alpha
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/ft/rad
     let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
         + i.cos_alpha * s.d_thrust_d_alpha
@@ -68,27 +82,52 @@ pub fn jacobians_values_from<R: Real>(
     let d_pitching_moment_d_alpha = p.z_t * s.d_thrust_d_alpha
         + i.reference_force * p.c_bar * s.d_c_m_d_alpha; // lb/rad
     state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy; // 1/s^2
+    state.alpha.alpha = -state.gamma.alpha;
+}
 
-    // Derivatives with respect to phi
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(state: &mut StateJacobianEntries<R>) {
+    state.alpha.pitch_rate = R::ONE;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi.
+#[inline(always)]
+fn jacobians_by_phi<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     input.pitch_rate.phi = p.z_t_over_i_yy * i.thrust_phi; // rad/s^2
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.alpha.phi = -s.d_force_turn_d_phi;
+}
 
-    // Derivatives with respect to delta_e
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     input.alpha.delta_e = -i.turn_factor * p.c_l_delta_e; // 1/s
     let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_delta_e; // lb/rad
     input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-
-    state.altitude.velocity = i.sin_gamma;
-    state.altitude.gamma = s.d_altitude_rate_d_gamma;
-    state.alpha.velocity = -state.gamma.velocity;
-    state.alpha.altitude = -state.gamma.altitude;
-    state.alpha.gamma = -state.gamma.gamma;
-    state.alpha.alpha = -state.gamma.alpha;
-    state.alpha.pitch_rate = R::ONE;
-    input.velocity.phi = s.d_velocity_rate_d_phi;
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
-    input.gamma.phi = s.d_force_turn_d_phi;
     input.gamma.delta_e = i.turn_factor * p.c_l_delta_e;
-    input.alpha.phi = -s.d_force_turn_d_phi;
+}
+
+/// [`jacobians_values`] where its stages are computed already.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+    jacobians_by_velocity(&mut state, p, i, s);
+    jacobians_by_altitude(&mut state, p, i, s);
+    jacobians_by_gamma(&mut state, i, s);
+    jacobians_by_alpha(&mut state, p, i, s);
+    jacobians_by_pitch_rate(&mut state);
+    jacobians_by_phi(&mut input, p, i, s);
+    jacobians_by_delta_e(&mut input, p, i, s);
     (state, input)
 }
 

@@ -2,7 +2,7 @@
 
 //! Functions of COM_RIGID. Units are foot, slug, second and radian.
 
-use super::{Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes};
+use super::{Input, Intermediates, ParameterJacobian, Parameters, Prepared, Slopes, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
@@ -27,20 +27,29 @@ ahv_core::entries! {
     }
 }
 
-/// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-
-    // Derivatives with respect to parameters
+fn parameter_jacobian_by_vehicle<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     parameter.gamma.m = -(i.thrust * i.sin_alpha * s.inverse_momentum_2 * x.velocity
         + i.c_l * s.d_reference_force_d_velocity * p.half_inv_m_2); // rad*ft/s/slug
+    parameter.velocity.m = -i.path_force * p.inv_m_2;
+    parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
+    parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
+    parameter.alpha.m = -parameter.gamma.m;
+    parameter.alpha.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
+    parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_i_yy;
+    parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
+    parameter.pitch_rate.c_bar = i.c_m * i.reference_force * p.inv_i_yy;
+    parameter.pitch_rate.z_t = i.thrust * p.inv_i_yy;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment.
+#[inline(always)]
+fn parameter_jacobian_by_environment<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     let d_density_ratio_d_h_0 = i.density_ratio * p.inv_h_s; // 1/ft
     let d_density_d_h_0 = p.rho_0 * d_density_ratio_d_h_0; // slug/ft^4
     let d_dynamic_pressure_d_h_0 = R::HALF * i.velocity_2 * d_density_d_h_0; // lb/ft^3
@@ -62,28 +71,49 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb/ft
     parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
     let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
-    let two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
-            * (x.velocity - two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
+            * (x.velocity
+                - p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
             + x.velocity * p.earth_curvature_2
                 * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-    let d_gravity_turn_d_spherical_earth = p.inv_r_e
-        * (i.radius_ratio
-            * (two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity - x.velocity)
-            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
-    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-
-    parameter.velocity.m = -i.path_force * p.inv_m_2;
-    parameter.velocity.s = -i.c_d * i.dynamic_pressure * p.inv_m;
     parameter.velocity.rho_0 = i.c_d * p.minus_half_s_over_m * i.velocity_2 * i.density_ratio;
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
         * slope_of_radius_ratio_in_earth_curvature;
+    parameter.gamma.rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
+    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio;
+    parameter.alpha.h_0 = -parameter.gamma.h_0;
+    parameter.alpha.h_s = -parameter.gamma.h_s;
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+    parameter.alpha.r_e = -parameter.gamma.r_e;
+    parameter.pitch_rate.rho_0 = i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2 * i.density_ratio;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by choices.
+#[inline(always)]
+fn parameter_jacobian_by_choices<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
+    let d_gravity_turn_d_spherical_earth = p.inv_r_e
+        * (i.radius_ratio
+            * (p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
+                - x.velocity)
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
+    parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
         * slope_of_radius_ratio_in_earth_curvature;
+    parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by t.
+#[inline(always)]
+fn parameter_jacobian_by_t<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.t_phi_alpha_3 = i.cos_alpha * u.phi * i.alpha_3 * p.inv_m;
     parameter.velocity.t_phi_alpha_2 = i.cos_alpha * u.phi * i.alpha_2 * p.inv_m;
     parameter.velocity.t_phi_alpha = i.cos_alpha * u.phi * x.alpha * p.inv_m;
@@ -92,14 +122,6 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.velocity.t_alpha_2 = i.cos_alpha * i.alpha_2 * p.inv_m;
     parameter.velocity.t_alpha = i.cos_alpha * x.alpha * p.inv_m;
     parameter.velocity.t_0 = i.cos_alpha * p.inv_m;
-    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
-    parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
-    parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
-    parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
-    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
-    parameter.gamma.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.half_over_m;
-    parameter.gamma.rho_0 = i.c_l * p.half_s_over_m * x.velocity * i.density_ratio;
-    parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
     parameter.gamma.t_phi_alpha_3 = i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3;
     parameter.gamma.t_phi_alpha_2 = i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2;
     parameter.gamma.t_phi_alpha = i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
@@ -108,17 +130,6 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.gamma.t_alpha_2 = i.inverse_momentum * i.sin_alpha * i.alpha_2;
     parameter.gamma.t_alpha = i.inverse_momentum * i.sin_alpha * x.alpha;
     parameter.gamma.t_0 = i.inverse_momentum * i.sin_alpha;
-    parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
-    parameter.gamma.c_l_delta_e = i.turn_factor * u.delta_e;
-    parameter.gamma.c_l_0 = i.turn_factor;
-    parameter.alpha.m = -parameter.gamma.m;
-    parameter.alpha.s = i.c_l * s.d_dynamic_pressure_d_velocity * p.minus_half_over_m;
-    parameter.alpha.rho_0 = i.c_l * p.minus_half_s_over_m * x.velocity * i.density_ratio;
-    parameter.alpha.h_0 = -parameter.gamma.h_0;
-    parameter.alpha.h_s = -parameter.gamma.h_s;
-    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
-    parameter.alpha.r_e = -parameter.gamma.r_e;
-    parameter.alpha.spherical_earth = -parameter.gamma.spherical_earth;
     parameter.alpha.t_phi_alpha_3 = -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_3;
     parameter.alpha.t_phi_alpha_2 = -i.inverse_momentum * i.sin_alpha * u.phi * i.alpha_2;
     parameter.alpha.t_phi_alpha = -i.inverse_momentum * i.sin_alpha * u.phi * x.alpha;
@@ -127,14 +138,6 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.alpha.t_alpha_2 = -i.inverse_momentum * i.sin_alpha * i.alpha_2;
     parameter.alpha.t_alpha = -i.inverse_momentum * i.sin_alpha * x.alpha;
     parameter.alpha.t_0 = -i.inverse_momentum * i.sin_alpha;
-    parameter.alpha.c_l_alpha = -i.turn_factor * x.alpha;
-    parameter.alpha.c_l_delta_e = -i.turn_factor * u.delta_e;
-    parameter.alpha.c_l_0 = -i.turn_factor;
-    parameter.pitch_rate.i_yy = -i.pitch_acceleration * p.inv_i_yy;
-    parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
-    parameter.pitch_rate.c_bar = i.c_m * i.reference_force * p.inv_i_yy;
-    parameter.pitch_rate.z_t = i.thrust * p.inv_i_yy;
-    parameter.pitch_rate.rho_0 = i.c_m * p.half_c_bar_s_over_i_yy * i.velocity_2 * i.density_ratio;
     parameter.pitch_rate.t_phi_alpha_3 = p.z_t_over_i_yy * u.phi * i.alpha_3;
     parameter.pitch_rate.t_phi_alpha_2 = p.z_t_over_i_yy * u.phi * i.alpha_2;
     parameter.pitch_rate.t_phi_alpha = p.z_t_over_i_yy * u.phi * x.alpha;
@@ -143,10 +146,61 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.pitch_rate.t_alpha_2 = p.z_t_over_i_yy * i.alpha_2;
     parameter.pitch_rate.t_alpha = p.z_t_over_i_yy * x.alpha;
     parameter.pitch_rate.t_0 = p.z_t_over_i_yy;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
+    parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
+    parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
+    parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
+    parameter.velocity.c_d_delta_e = -i.reference_force * u.delta_e * p.inv_m;
+    parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
+#[inline(always)]
+fn parameter_jacobian_by_c_l<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, i: &Intermediates<R>,
+) {
+    parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
+    parameter.gamma.c_l_delta_e = i.turn_factor * u.delta_e;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.alpha.c_l_alpha = -i.turn_factor * x.alpha;
+    parameter.alpha.c_l_delta_e = -i.turn_factor * u.delta_e;
+    parameter.alpha.c_l_0 = -i.turn_factor;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
     parameter.pitch_rate.c_m_delta_e = i.reference_force * p.c_bar_over_i_yy * u.delta_e;
     parameter.pitch_rate.c_m_0 = i.reference_force * p.c_bar_over_i_yy;
+}
+
+/// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
+#[inline(always)]
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
+    parameter_jacobian_by_vehicle(&mut parameter, x, p, &i, &s);
+    parameter_jacobian_by_environment(&mut parameter, x, p, &i);
+    parameter_jacobian_by_choices(&mut parameter, x, p, &i);
+    parameter_jacobian_by_t(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_c_d(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_c_l(&mut parameter, x, u, &i);
+    parameter_jacobian_by_c_m(&mut parameter, x, u, p, &i);
     parameter
 }
 

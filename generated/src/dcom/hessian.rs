@@ -37,7 +37,6 @@ ahv_core::entries! {
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
 fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to velocity
     let d2_thrust_d_velocity_d_velocity = i.c_t * p.s * i.density; // lb*s^2/ft^3
     let d2_drag_d_velocity_d_velocity = i.c_d * p.s * i.density; // lb*s^2/ft^3
     let d2_path_force_d_velocity_d_velocity = i.cos_alpha * d2_thrust_d_velocity_d_velocity
@@ -52,7 +51,6 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
     hessian.eta_dot_1.velocity.velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     hessian.eta_dot_2.velocity.velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
     hessian.eta_dot_3.velocity.velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
@@ -62,7 +60,6 @@ fn hessian_by_altitude<R: Real>(
     hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to altitude
     let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
     let d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
     let d2_thrust_d_velocity_d_altitude = i.c_t * d2_reference_force_d_velocity_d_altitude; // lb*s/ft^3
@@ -114,17 +111,54 @@ fn hessian_by_altitude<R: Real>(
     hessian.eta_dot_2.altitude.altitude = i.c_n_2 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
     hessian.eta_dot_3.altitude.velocity = i.c_n_3 * d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
     hessian.eta_dot_3.altitude.altitude = i.c_n_3 * d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-
     hessian.alpha.altitude.velocity = -hessian.gamma.altitude.velocity;
     hessian.alpha.altitude.altitude = -hessian.gamma.altitude.altitude;
 }
 
-/// Entries of [`hessian_values`]: derivatives by gamma, alpha, eta_1.
+/// Entries of [`hessian_values`]: derivatives by gamma.
 #[inline(always)]
-fn hessian_by_gamma_to_eta_1<R: Real>(
-    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
-) {
-    // Derivatives with respect to eta_1
+fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, i: &Intermediates<R>, h: &Curvatures<R>) {
+    hessian.velocity.gamma.altitude = h.d2_velocity_rate_d_altitude_d_gamma;
+    hessian.velocity.gamma.gamma = h.d2_velocity_rate_d_gamma_d_gamma;
+    hessian.altitude.gamma.velocity = i.cos_gamma;
+    hessian.altitude.gamma.gamma = h.d2_altitude_rate_d_gamma_d_gamma;
+    hessian.gamma.gamma.velocity = h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.gamma.gamma.altitude = h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.gamma.gamma.gamma = h.d2_gamma_rate_d_gamma_d_gamma;
+    hessian.alpha.gamma.velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
+    hessian.alpha.gamma.altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
+    hessian.alpha.gamma.gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha.
+#[inline(always)]
+fn hessian_by_alpha<R: Real>(hessian: &mut HessianEntries<R>, h: &Curvatures<R>) {
+    hessian.velocity.alpha.velocity = h.d2_velocity_rate_d_velocity_d_alpha;
+    hessian.velocity.alpha.altitude = h.d2_velocity_rate_d_altitude_d_alpha;
+    hessian.velocity.alpha.alpha = h.d2_velocity_rate_d_alpha_d_alpha;
+    hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha.alpha.velocity = -h.d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha.alpha.altitude = -h.d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha.alpha.alpha = -h.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate.alpha.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate.alpha.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
+    hessian.eta_dot_1.alpha.velocity = h.d2_generalized_force_1_d_velocity_d_alpha;
+    hessian.eta_dot_1.alpha.altitude = h.d2_generalized_force_1_d_altitude_d_alpha;
+    hessian.eta_dot_1.alpha.alpha = h.d2_generalized_force_1_d_alpha_d_alpha;
+    hessian.eta_dot_2.alpha.velocity = h.d2_generalized_force_2_d_velocity_d_alpha;
+    hessian.eta_dot_2.alpha.altitude = h.d2_generalized_force_2_d_altitude_d_alpha;
+    hessian.eta_dot_2.alpha.alpha = h.d2_generalized_force_2_d_alpha_d_alpha;
+    hessian.eta_dot_3.alpha.velocity = h.d2_generalized_force_3_d_velocity_d_alpha;
+    hessian.eta_dot_3.alpha.altitude = h.d2_generalized_force_3_d_altitude_d_alpha;
+    hessian.eta_dot_3.alpha.alpha = h.d2_generalized_force_3_d_alpha_d_alpha;
+}
+
+/// Entries of [`hessian_values`]: derivatives by eta_1.
+#[inline(always)]
+fn hessian_by_eta_1<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     let d2_thrust_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_eta_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_eta_1 = i.cos_alpha * d2_thrust_d_velocity_d_eta_1
@@ -147,127 +181,66 @@ fn hessian_by_gamma_to_eta_1<R: Real>(
     let d2_pitching_moment_d_altitude_d_eta_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_altitude_d_eta_1; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.eta_1.altitude = d2_pitching_moment_d_altitude_d_eta_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    hessian.velocity.gamma.altitude = h.d2_velocity_rate_d_altitude_d_gamma;
-    hessian.velocity.gamma.gamma = h.d2_velocity_rate_d_gamma_d_gamma;
-    hessian.altitude.gamma.velocity = i.cos_gamma;
-    hessian.altitude.gamma.gamma = h.d2_altitude_rate_d_gamma_d_gamma;
-    hessian.gamma.gamma.velocity = h.d2_gamma_rate_d_velocity_d_gamma;
-    hessian.gamma.gamma.altitude = h.d2_gamma_rate_d_altitude_d_gamma;
-    hessian.gamma.gamma.gamma = h.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.alpha.gamma.velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
-    hessian.alpha.gamma.altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
-    hessian.alpha.gamma.gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
-    hessian.velocity.alpha.velocity = h.d2_velocity_rate_d_velocity_d_alpha;
-    hessian.velocity.alpha.altitude = h.d2_velocity_rate_d_altitude_d_alpha;
-    hessian.velocity.alpha.alpha = h.d2_velocity_rate_d_alpha_d_alpha;
-    hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
-    hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
-    hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha.alpha.velocity = -h.d2_force_turn_d_velocity_d_alpha;
-    hessian.alpha.alpha.altitude = -h.d2_force_turn_d_altitude_d_alpha;
-    hessian.alpha.alpha.alpha = -h.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate.alpha.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
-    hessian.pitch_rate.alpha.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
-    hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
-    hessian.eta_dot_1.alpha.velocity = h.d2_generalized_force_1_d_velocity_d_alpha;
-    hessian.eta_dot_1.alpha.altitude = h.d2_generalized_force_1_d_altitude_d_alpha;
-    hessian.eta_dot_1.alpha.alpha = h.d2_generalized_force_1_d_alpha_d_alpha;
-    hessian.eta_dot_2.alpha.velocity = h.d2_generalized_force_2_d_velocity_d_alpha;
-    hessian.eta_dot_2.alpha.altitude = h.d2_generalized_force_2_d_altitude_d_alpha;
-    hessian.eta_dot_2.alpha.alpha = h.d2_generalized_force_2_d_alpha_d_alpha;
-    hessian.eta_dot_3.alpha.velocity = h.d2_generalized_force_3_d_velocity_d_alpha;
-    hessian.eta_dot_3.alpha.altitude = h.d2_generalized_force_3_d_altitude_d_alpha;
-    hessian.eta_dot_3.alpha.alpha = h.d2_generalized_force_3_d_alpha_d_alpha;
     hessian.alpha.eta_1.velocity = -hessian.gamma.eta_1.velocity;
     hessian.alpha.eta_1.altitude = -hessian.gamma.eta_1.altitude;
     hessian.alpha.eta_1.alpha = -hessian.gamma.eta_1.alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by eta_2, eta_3.
+/// Entries of [`hessian_values`]: derivatives by eta_2.
 #[inline(always)]
-fn hessian_by_eta_2_eta_3<R: Real>(
-    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to eta_2
+fn hessian_by_eta_2<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     let d2_thrust_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_eta_2 = i.cos_alpha * d2_thrust_d_velocity_d_eta_2
         - d2_drag_d_velocity_d_eta_2; // lb*s/ft^2.5/slug^0.5
     hessian.velocity.eta_2.velocity = d2_path_force_d_velocity_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_3
-    let d2_thrust_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_eta_3 = i.cos_alpha * d2_thrust_d_velocity_d_eta_3
-        - d2_drag_d_velocity_d_eta_3; // lb*s/ft^2.5/slug^0.5
-    hessian.velocity.eta_3.velocity = d2_path_force_d_velocity_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_2
     let d2_thrust_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_eta_2 = i.cos_alpha * d2_thrust_d_altitude_d_eta_2
         - d2_drag_d_altitude_d_eta_2; // lb/ft^2.5/slug^0.5
     hessian.velocity.eta_2.altitude = d2_path_force_d_altitude_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_eta_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2;
+    hessian.velocity.eta_2.alpha = d2_path_force_d_alpha_d_eta_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    hessian.gamma.eta_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
+    hessian.gamma.eta_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.eta_2.alpha = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_velocity_d_eta_2; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_2.velocity = d2_pitching_moment_d_velocity_d_eta_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_altitude_d_eta_2; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.eta_2.altitude = d2_pitching_moment_d_altitude_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    hessian.alpha.eta_2.velocity = -hessian.gamma.eta_2.velocity;
+    hessian.alpha.eta_2.altitude = -hessian.gamma.eta_2.altitude;
+    hessian.alpha.eta_2.alpha = -hessian.gamma.eta_2.alpha;
+}
 
-    // Derivatives with respect to eta_3
+/// Entries of [`hessian_values`]: derivatives by eta_3.
+#[inline(always)]
+fn hessian_by_eta_3<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
+    let d2_thrust_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_eta_3 = i.cos_alpha * d2_thrust_d_velocity_d_eta_3
+        - d2_drag_d_velocity_d_eta_3; // lb*s/ft^2.5/slug^0.5
+    hessian.velocity.eta_3.velocity = d2_path_force_d_velocity_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
     let d2_thrust_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_eta_3 = i.cos_alpha * d2_thrust_d_altitude_d_eta_3
         - d2_drag_d_altitude_d_eta_3; // lb/ft^2.5/slug^0.5
     hessian.velocity.eta_3.altitude = d2_path_force_d_altitude_d_eta_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    // lb/ft^1.5/rad/slug^0.5
-    let d2_path_force_d_alpha_d_eta_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2;
-    hessian.velocity.eta_2.alpha = d2_path_force_d_alpha_d_eta_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to eta_3
     // lb/ft^1.5/rad/slug^0.5
     let d2_path_force_d_alpha_d_eta_3 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_3;
     hessian.velocity.eta_3.alpha = d2_path_force_d_alpha_d_eta_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to eta_2
-    hessian.gamma.eta_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_eta_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_3
     hessian.gamma.eta_3.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_eta_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    hessian.gamma.eta_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_eta_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_3
     hessian.gamma.eta_3.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_eta_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    hessian.gamma.eta_2.alpha = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_3
     hessian.gamma.eta_3.alpha = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    let d2_pitching_moment_d_velocity_d_eta_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
-        + p.z_t * d2_thrust_d_velocity_d_eta_2; // lb*s/ft^1.5/slug^0.5
-    hessian.pitch_rate.eta_2.velocity = d2_pitching_moment_d_velocity_d_eta_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_3
     let d2_pitching_moment_d_velocity_d_eta_3 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_velocity_d_eta_3; // lb*s/ft^1.5/slug^0.5
     hessian.pitch_rate.eta_3.velocity = d2_pitching_moment_d_velocity_d_eta_3 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_2
-    let d2_pitching_moment_d_altitude_d_eta_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
-        + p.z_t * d2_thrust_d_altitude_d_eta_2; // lb/ft^1.5/slug^0.5
-    hessian.pitch_rate.eta_2.altitude = d2_pitching_moment_d_altitude_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    // Derivatives with respect to eta_3
     let d2_pitching_moment_d_altitude_d_eta_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_altitude_d_eta_3; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.eta_3.altitude = d2_pitching_moment_d_altitude_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    hessian.alpha.eta_2.velocity = -hessian.gamma.eta_2.velocity;
-    hessian.alpha.eta_2.altitude = -hessian.gamma.eta_2.altitude;
-    hessian.alpha.eta_2.alpha = -hessian.gamma.eta_2.alpha;
     hessian.alpha.eta_3.velocity = -hessian.gamma.eta_3.velocity;
     hessian.alpha.eta_3.altitude = -hessian.gamma.eta_3.altitude;
     hessian.alpha.eta_3.alpha = -hessian.gamma.eta_3.alpha;
@@ -286,8 +259,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> H
     let mut hessian = HessianEntries::splat(R::ZERO);
     hessian_by_velocity(&mut hessian, p, &i, &s);
     hessian_by_altitude(&mut hessian, x, p, &i, &s, &h);
-    hessian_by_gamma_to_eta_1(&mut hessian, p, &i, &s, &h);
-    hessian_by_eta_2_eta_3(&mut hessian, p, &i, &s);
+    hessian_by_gamma(&mut hessian, &i, &h);
+    hessian_by_alpha(&mut hessian, &h);
+    hessian_by_eta_1(&mut hessian, p, &i, &s);
+    hessian_by_eta_2(&mut hessian, p, &i, &s);
+    hessian_by_eta_3(&mut hessian, p, &i, &s);
     hessian
 }
 

@@ -37,12 +37,11 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, eta_1, eta_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-fn jacobians_by_velocity_to_eta_2<R: Real>(
+fn jacobians_by_velocity<R: Real>(
     state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
     state.velocity.velocity = d_path_force_d_velocity * p.inv_m; // 1/s
@@ -54,8 +53,15 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     state.eta_dot_1.velocity = i.c_n_1 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     state.eta_dot_2.velocity = i.c_n_2 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
     state.eta_dot_3.velocity = i.c_n_3 * s.d_reference_force_d_velocity; // slug^0.5/ft^0.5/s
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+}
 
-    // Derivatives with respect to altitude
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft^2
     let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
     state.velocity.altitude = d_path_force_d_altitude * p.inv_m
@@ -68,7 +74,35 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     state.eta_dot_1.altitude = i.c_n_1 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     state.eta_dot_2.altitude = i.c_n_2 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
     state.eta_dot_3.altitude = i.c_n_3 * s.d_reference_force_d_altitude; // slug^0.5/ft^0.5/s^2
+    state.alpha.altitude = -state.gamma.altitude;
+}
 
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, s: &Slopes<R>) {
+    state.velocity.gamma = s.d_velocity_rate_d_gamma;
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.gamma.gamma = s.d_gamma_rate_d_gamma;
+    state.alpha.gamma = -s.d_gamma_rate_d_gamma;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(state: &mut StateJacobianEntries<R>, s: &Slopes<R>) {
+    state.velocity.alpha = s.d_velocity_rate_d_alpha;
+    state.gamma.alpha = s.d_force_turn_d_alpha;
+    state.alpha.alpha = -s.d_force_turn_d_alpha;
+    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
+    state.eta_dot_1.alpha = s.d_generalized_force_1_d_alpha;
+    state.eta_dot_2.alpha = s.d_generalized_force_2_d_alpha;
+    state.eta_dot_3.alpha = s.d_generalized_force_3_d_alpha;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by eta.
+#[inline(always)]
+fn jacobians_by_eta<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to eta_1
     let d_path_force_d_eta_1 = i.reference_force * (s.cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     state.velocity.eta_1 = d_path_force_d_eta_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
@@ -83,33 +117,6 @@ fn jacobians_by_velocity_to_eta_2<R: Real>(
     let d_pitching_moment_d_eta_2 = i.reference_force * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     state.pitch_rate.eta_2 = d_pitching_moment_d_eta_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    state.altitude.velocity = i.sin_gamma;
-    state.alpha.velocity = -state.gamma.velocity;
-    state.alpha.altitude = -state.gamma.altitude;
-    state.velocity.gamma = s.d_velocity_rate_d_gamma;
-    state.altitude.gamma = s.d_altitude_rate_d_gamma;
-    state.gamma.gamma = s.d_gamma_rate_d_gamma;
-    state.alpha.gamma = -s.d_gamma_rate_d_gamma;
-    state.velocity.alpha = s.d_velocity_rate_d_alpha;
-    state.gamma.alpha = s.d_force_turn_d_alpha;
-    state.alpha.alpha = -s.d_force_turn_d_alpha;
-    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
-    state.eta_dot_1.alpha = s.d_generalized_force_1_d_alpha;
-    state.eta_dot_2.alpha = s.d_generalized_force_2_d_alpha;
-    state.eta_dot_3.alpha = s.d_generalized_force_3_d_alpha;
-    state.alpha.eta_1 = -state.gamma.eta_1;
-    state.eta_dot_1.eta_1 = p.minus_stiffness_1;
-    state.alpha.eta_2 = -state.gamma.eta_2;
-    state.eta_dot_2.eta_2 = p.minus_stiffness_2;
-}
-
-/// Entries of [`jacobians_values`]: derivatives by eta_3, pitch_rate, eta_dot_1, eta_dot_2, eta_dot_3, phi,
-/// delta_e, delta_c.
-#[inline(always)]
-fn jacobians_by_eta_3_to_delta_c<R: Real>(
-    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
     // Derivatives with respect to eta_3
     let d_path_force_d_eta_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     state.velocity.eta_3 = d_path_force_d_eta_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
@@ -117,40 +124,69 @@ fn jacobians_by_eta_3_to_delta_c<R: Real>(
     let d_pitching_moment_d_eta_3 = i.reference_force * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     state.pitch_rate.eta_3 = d_pitching_moment_d_eta_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    // Derivatives with respect to phi
-    let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
-    let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
-    input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
-
-    // Derivatives with respect to delta_e
-    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * i.reference_force; // lb/rad
-    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-    input.eta_dot_1.delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    input.eta_dot_2.delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-    input.eta_dot_3.delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
-
-    // Derivatives with respect to delta_c
-    let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command * i.reference_force; // lb/rad
-    input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-    input.eta_dot_1.delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    input.eta_dot_2.delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-    input.eta_dot_3.delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
-
+    state.alpha.eta_1 = -state.gamma.eta_1;
+    state.alpha.eta_2 = -state.gamma.eta_2;
     state.alpha.eta_3 = -state.gamma.eta_3;
+    state.eta_dot_1.eta_1 = p.minus_stiffness_1;
+    state.eta_dot_2.eta_2 = p.minus_stiffness_2;
     state.eta_dot_3.eta_3 = p.minus_stiffness_3;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(state: &mut StateJacobianEntries<R>) {
     state.alpha.pitch_rate = R::ONE;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by eta_dot.
+#[inline(always)]
+fn jacobians_by_eta_dot<R: Real>(state: &mut StateJacobianEntries<R>, p: &Prepared<R>) {
     state.eta_1.eta_dot_1 = R::ONE;
     state.eta_dot_1.eta_dot_1 = p.minus_damping_1;
     state.eta_2.eta_dot_2 = R::ONE;
     state.eta_dot_2.eta_dot_2 = p.minus_damping_2;
     state.eta_3.eta_dot_3 = R::ONE;
     state.eta_dot_3.eta_dot_3 = p.minus_damping_3;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi.
+#[inline(always)]
+fn jacobians_by_phi<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
+    let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
+    input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
     input.velocity.phi = s.d_velocity_rate_d_phi;
     input.gamma.phi = s.d_force_turn_d_phi;
     input.alpha.phi = -s.d_force_turn_d_phi;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_pitching_moment_d_delta_e = p.c_bar_times_d_c_m_d_delta_e * i.reference_force; // lb/rad
+    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
+    input.eta_dot_1.delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_2.delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_3.delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.gamma.delta_e = s.d_force_turn_d_delta_e;
     input.alpha.delta_e = -s.d_force_turn_d_delta_e;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_c.
+#[inline(always)]
+fn jacobians_by_delta_c<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_pitching_moment_d_delta_c = p.c_bar_c_m_delta_c_canard_command * i.reference_force; // lb/rad
+    input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
+    input.eta_dot_1.delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_2.delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
+    input.eta_dot_3.delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
     input.gamma.delta_c = s.d_force_turn_d_delta_c;
     input.alpha.delta_c = -s.d_force_turn_d_delta_c;
@@ -163,8 +199,16 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_eta_2(&mut state, p, i, s);
-    jacobians_by_eta_3_to_delta_c(&mut state, &mut input, p, i, s);
+    jacobians_by_velocity(&mut state, p, i, s);
+    jacobians_by_altitude(&mut state, p, i, s);
+    jacobians_by_gamma(&mut state, s);
+    jacobians_by_alpha(&mut state, s);
+    jacobians_by_eta(&mut state, p, i, s);
+    jacobians_by_pitch_rate(&mut state);
+    jacobians_by_eta_dot(&mut state, p);
+    jacobians_by_phi(&mut input, p, i, s);
+    jacobians_by_delta_e(&mut input, p, i, s);
+    jacobians_by_delta_c(&mut input, p, i, s);
     (state, input)
 }
 

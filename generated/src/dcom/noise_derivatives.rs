@@ -45,7 +45,6 @@ pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepare
         * s.d_velocity_rate_d_alpha;
     let d2_force_turn_d_alpha_d_alpha_times_d_force_turn_d_alpha = h.d2_force_turn_d_alpha_d_alpha
         * s.d_force_turn_d_alpha;
-
     noise_derivatives.velocity.w_gamma.w_gamma = p.w_gamma_2
         * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
             + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);

@@ -3,8 +3,8 @@
 //! Functions of DCOM. Units are foot, slug, second and radian.
 
 use super::{
-    Curvatures, Input, Intermediates, ParameterJacobian, Parameters, Prepared, Sensitivities, Slopes, State, curvatures,
-    intermediates, sensitivities, slopes,
+    Curvatures, Input, Intermediates, ParameterJacobian, Parameters, Prepared, Slopes, State, curvatures, intermediates,
+    slopes,
 };
 use ahv_core::Real;
 
@@ -53,12 +53,10 @@ ahv_core::entries! {
 fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_s = i.dynamic_pressure * (i.c_t * i.cos_alpha - i.c_d); // lb/ft^2
     parameter.velocity.s = d_path_force_d_s * p.inv_m; // 1/s^2
     let d_pitching_moment_d_s = i.dynamic_pressure * (p.c_bar * i.c_m + p.z_t * i.c_t); // lb/ft
     parameter.pitch_rate.s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
-
     parameter.velocity.m = -i.path_force * p.inv_m_2;
     parameter.gamma.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2;
     parameter.gamma.s = i.normal_coefficient * s.d_dynamic_pressure_d_velocity * p.half_over_m;
@@ -76,9 +74,7 @@ fn parameter_jacobian_by_vehicle<R: Real>(
 #[inline(always)]
 fn parameter_jacobian_by_environment<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, h: &Curvatures<R>,
-    q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_rho_0 = p.s * i.density_ratio
         * (R::HALF * i.cos_alpha * i.c_t * i.velocity_2 - R::HALF * i.c_d * i.velocity_2); // lb*ft^2/slug
     parameter.velocity.rho_0 = d_path_force_d_rho_0 * p.inv_m; // ft^4/s^2/slug
@@ -116,17 +112,17 @@ fn parameter_jacobian_by_environment<R: Real>(
     parameter.eta_dot_1.h_s = i.c_n_1 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     parameter.eta_dot_2.h_s = i.c_n_2 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
     parameter.eta_dot_3.h_s = i.c_n_3 * d_reference_force_d_h_s; // slug^0.5/ft^0.5/s^2
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let d_gravity_turn_d_r_e = p.inv_r_e
         * (p.earth_curvature * i.radius_ratio
             * (x.velocity
-                - q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity)
+                - p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity)
             + x.velocity * p.earth_curvature_2
-                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
+                * slope_of_radius_ratio_in_earth_curvature); // 1/s/ft
     parameter.gamma.r_e = -i.cos_gamma * d_gravity_turn_d_r_e; // rad/s/ft
-
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
-        * q.slope_of_radius_ratio_in_earth_curvature;
+        * slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma.rho_0 = i.normal_coefficient * p.half_s_over_m * x.velocity * i.density_ratio;
     parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
     parameter.alpha.rho_0 = i.normal_coefficient * p.minus_half_s_over_m * x.velocity * i.density_ratio;
@@ -139,26 +135,24 @@ fn parameter_jacobian_by_environment<R: Real>(
     parameter.eta_dot_3.rho_0 = i.c_n_3 * p.half_s * i.velocity_2 * i.density_ratio;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by choices, c_t.
+/// Entries of [`parameter_jacobian_values`]: derivatives by choices.
 #[inline(always)]
-fn parameter_jacobian_by_choices_c_t<R: Real>(
+fn parameter_jacobian_by_choices<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, q: &Sensitivities<R>,
+    s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
+    let slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
     let d_gravity_turn_d_spherical_earth = p.inv_r_e
         * (i.radius_ratio
-            * (q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity
+            * (p.two_g * slope_of_radius_ratio_in_earth_curvature * i.inv_velocity
                 - x.velocity)
-            - x.velocity * p.earth_curvature
-                * q.slope_of_radius_ratio_in_earth_curvature); // 1/s
+            - x.velocity * p.earth_curvature * slope_of_radius_ratio_in_earth_curvature); // 1/s
     parameter.gamma.spherical_earth = -i.cos_gamma * d_gravity_turn_d_spherical_earth; // rad/s
-
     parameter.velocity.canard_command = -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_c * p.inv_m;
     parameter.velocity.canard_slaving = i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.c_l_delta_e_over_c_l_delta_c_m;
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
-        * q.slope_of_radius_ratio_in_earth_curvature;
+        * slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma.canard_command = i.turn_factor * p.c_l_delta_c * u.delta_c;
     parameter.gamma.canard_slaving = -i.turn_factor * u.delta_e * p.c_l_delta_e;
     parameter.alpha.canard_command = -i.turn_factor * p.c_l_delta_c * u.delta_c;
@@ -173,6 +167,13 @@ fn parameter_jacobian_by_choices_c_t<R: Real>(
     parameter.eta_dot_2.canard_slaving = -i.reference_force * p.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
     parameter.eta_dot_3.canard_command = i.reference_force * p.c_n_3_delta_c * u.delta_c;
     parameter.eta_dot_3.canard_slaving = -i.reference_force * p.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c * u.delta_e;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_t.
+#[inline(always)]
+fn parameter_jacobian_by_c_t<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.c_t_phi_alpha_3 = i.cos_alpha * i.reference_force * u.phi * i.alpha_3 * p.inv_m;
     parameter.velocity.c_t_phi_alpha_2 = i.cos_alpha * i.reference_force * u.phi * i.alpha_2 * p.inv_m;
     parameter.velocity.c_t_phi_alpha = i.cos_alpha * i.reference_force * u.phi * x.alpha * p.inv_m;
@@ -219,19 +220,14 @@ fn parameter_jacobian_by_choices_c_t<R: Real>(
     parameter.pitch_rate.c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * x.eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d, c_m, modes, c_n_1, c_n_2, c_n_3.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
 #[inline(always)]
-fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
+fn parameter_jacobian_by_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, q: &Sensitivities<R>,
+    s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
-    parameter.eta_dot_1.omega_1 = -(x.eta_dot_1 * p.two_zeta_1 + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
-    parameter.eta_dot_2.omega_2 = -(x.eta_dot_2 * p.two_zeta_2 + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
-    parameter.eta_dot_3.omega_3 = -(x.eta_dot_3 * p.two_zeta_3 + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
     let d_c_l_d_c_l_delta_e = u.delta_e * p.d_elevator_lift_d_c_l_delta_e; // rad
     parameter.gamma.c_l_delta_e = i.turn_factor * d_c_l_d_c_l_delta_e; // rad^2/s
-
     parameter.velocity.c_l_delta_e = i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
         * p.canard_slaving_over_c_l_delta_c_m;
     parameter.velocity.c_l_delta_c = -i.reference_force * s.slope_of_c_d_in_canard_deflection * u.delta_e
@@ -262,6 +258,13 @@ fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
     parameter.eta_dot_3.c_l_delta_e = -i.reference_force * p.c_n_3_delta_c_canard_slaving_over_c_l_delta_c * u.delta_e;
     parameter.eta_dot_3.c_l_delta_c = i.reference_force * p.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2
         * u.delta_e;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
     parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
     parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
@@ -272,6 +275,13 @@ fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
     parameter.velocity.c_d_eta_1 = -i.reference_force * x.eta_1 * p.inv_m;
     parameter.velocity.c_d_eta_2 = -i.reference_force * x.eta_2 * p.inv_m;
     parameter.velocity.c_d_eta_3 = -i.reference_force * x.eta_3 * p.inv_m;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.pitch_rate.c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = p.c_bar_over_i_yy * i.reference_force * x.alpha;
     parameter.pitch_rate.c_m_delta_e = p.c_bar_over_i_yy * i.reference_force * u.delta_e;
@@ -280,23 +290,38 @@ fn parameter_jacobian_by_c_l_to_c_n_3<R: Real>(
     parameter.pitch_rate.c_m_eta_1 = p.c_bar_over_i_yy * i.reference_force * x.eta_1;
     parameter.pitch_rate.c_m_eta_2 = p.c_bar_over_i_yy * i.reference_force * x.eta_2;
     parameter.pitch_rate.c_m_eta_3 = p.c_bar_over_i_yy * i.reference_force * x.eta_3;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by modes.
+#[inline(always)]
+fn parameter_jacobian_by_modes<R: Real>(parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>) {
+    parameter.eta_dot_1.omega_1 = -(x.eta_dot_1 * p.two_zeta_1 + x.eta_1 * p.two_omega_1); // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_2.omega_2 = -(x.eta_dot_2 * p.two_zeta_2 + x.eta_2 * p.two_omega_2); // ft^0.5*slug^0.5/s/rad
+    parameter.eta_dot_3.omega_3 = -(x.eta_dot_3 * p.two_zeta_3 + x.eta_3 * p.two_omega_3); // ft^0.5*slug^0.5/s/rad
     parameter.eta_dot_1.zeta_1 = x.eta_dot_1 * p.minus_two_omega_1;
     parameter.eta_dot_2.zeta_2 = x.eta_dot_2 * p.minus_two_omega_2;
     parameter.eta_dot_3.zeta_3 = x.eta_dot_3 * p.minus_two_omega_3;
-    parameter.eta_dot_1.c_n_1_alpha_2 = q.reference_force_alpha_2;
-    parameter.eta_dot_1.c_n_1_alpha = q.reference_force_alpha;
-    parameter.eta_dot_1.c_n_1_delta_e = q.reference_force_delta_e;
-    parameter.eta_dot_1.c_n_1_delta_c = q.reference_force_canard_deflection;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n.
+#[inline(always)]
+fn parameter_jacobian_by_c_n<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, i: &Intermediates<R>,
+) {
+    parameter.eta_dot_1.c_n_1_alpha_2 = i.reference_force * i.alpha_2;
+    parameter.eta_dot_1.c_n_1_alpha = i.reference_force * x.alpha;
+    parameter.eta_dot_1.c_n_1_delta_e = i.reference_force * u.delta_e;
+    parameter.eta_dot_1.c_n_1_delta_c = i.reference_force * i.canard_deflection;
     parameter.eta_dot_1.c_n_1_0 = i.reference_force;
-    parameter.eta_dot_2.c_n_2_alpha_2 = q.reference_force_alpha_2;
-    parameter.eta_dot_2.c_n_2_alpha = q.reference_force_alpha;
-    parameter.eta_dot_2.c_n_2_delta_e = q.reference_force_delta_e;
-    parameter.eta_dot_2.c_n_2_delta_c = q.reference_force_canard_deflection;
+    parameter.eta_dot_2.c_n_2_alpha_2 = parameter.eta_dot_1.c_n_1_alpha_2;
+    parameter.eta_dot_2.c_n_2_alpha = parameter.eta_dot_1.c_n_1_alpha;
+    parameter.eta_dot_2.c_n_2_delta_e = parameter.eta_dot_1.c_n_1_delta_e;
+    parameter.eta_dot_2.c_n_2_delta_c = parameter.eta_dot_1.c_n_1_delta_c;
     parameter.eta_dot_2.c_n_2_0 = i.reference_force;
-    parameter.eta_dot_3.c_n_3_alpha_2 = q.reference_force_alpha_2;
-    parameter.eta_dot_3.c_n_3_alpha = q.reference_force_alpha;
-    parameter.eta_dot_3.c_n_3_delta_e = q.reference_force_delta_e;
-    parameter.eta_dot_3.c_n_3_delta_c = q.reference_force_canard_deflection;
+    parameter.eta_dot_3.c_n_3_alpha_2 = parameter.eta_dot_1.c_n_1_alpha_2;
+    parameter.eta_dot_3.c_n_3_alpha = parameter.eta_dot_1.c_n_1_alpha;
+    parameter.eta_dot_3.c_n_3_delta_e = parameter.eta_dot_1.c_n_1_delta_e;
+    parameter.eta_dot_3.c_n_3_delta_c = parameter.eta_dot_1.c_n_1_delta_c;
     parameter.eta_dot_3.c_n_3_0 = i.reference_force;
 }
 
@@ -310,12 +335,16 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let i = intermediates(x, u, p);
     let s = slopes(x, u, p, &i);
     let h = curvatures(x, u, p, &i, &s);
-    let q = sensitivities(x, u, p, &i);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
     parameter_jacobian_by_vehicle(&mut parameter, p, &i, &s);
-    parameter_jacobian_by_environment(&mut parameter, x, p, &i, &h, &q);
-    parameter_jacobian_by_choices_c_t(&mut parameter, x, u, p, &i, &s, &q);
-    parameter_jacobian_by_c_l_to_c_n_3(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_environment(&mut parameter, x, p, &i, &h);
+    parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_c_t(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_c_l(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_c_d(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_c_m(&mut parameter, x, u, p, &i);
+    parameter_jacobian_by_modes(&mut parameter, x, p);
+    parameter_jacobian_by_c_n(&mut parameter, x, u, &i);
     parameter
 }
 

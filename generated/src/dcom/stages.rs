@@ -424,33 +424,3 @@ pub fn curvatures<R: Real>(
     h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
     h
 }
-
-ahv_core::record! {
-    /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
-    /// a description is what its name says: its formula and unit stand in [`sensitivities`].
-    pub struct Sensitivities<R> {
-        /// Partial derivative of radius of the Earth over the distance to its centre with respect to curvature of the
-        /// Earth, 0 where it is flat, ft.
-        slope_of_radius_ratio_in_earth_curvature,
-        two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity, reference_force_alpha_2, reference_force_alpha,
-        reference_force_delta_e, reference_force_canard_deflection,
-    }
-}
-
-/// Computes [`Sensitivities`].
-#[inline(always)]
-pub fn sensitivities<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Sensitivities<R> {
-    let mut q = Sensitivities::splat(R::ZERO);
-
-    // Derivatives with respect to parameters
-    q.slope_of_radius_ratio_in_earth_curvature = -i.radius_ratio_2 * x.altitude; // ft
-
-    // Further values
-    q.two_g_slope_of_radius_ratio_in_earth_curvature_over_velocity = p.two_g
-        * q.slope_of_radius_ratio_in_earth_curvature * i.inv_velocity;
-    q.reference_force_alpha_2 = i.reference_force * i.alpha_2;
-    q.reference_force_alpha = i.reference_force * x.alpha;
-    q.reference_force_delta_e = i.reference_force * u.delta_e;
-    q.reference_force_canard_deflection = i.reference_force * i.canard_deflection;
-    q
-}

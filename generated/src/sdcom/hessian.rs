@@ -34,7 +34,6 @@ ahv_core::entries! {
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
 fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_eta_static_1_d_velocity_d_velocity = d2_generalized_force_1_d_velocity_d_velocity
         * p.inv_omega_1_2; // slug^0.5*s^2/ft^1.5
@@ -80,16 +79,14 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
             + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
     hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude, gamma, alpha.
+/// Entries of [`hessian_values`]: derivatives by altitude.
 #[inline(always)]
-fn hessian_by_altitude_to_alpha<R: Real>(
+fn hessian_by_altitude<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to altitude
     let d2_c_d_d_velocity_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
@@ -130,11 +127,15 @@ fn hessian_by_altitude_to_alpha<R: Real>(
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
         + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
     hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
-
     hessian.gamma.altitude.velocity = h.d2_gamma_rate_d_velocity_d_altitude;
     hessian.gamma.altitude.altitude = h.d2_gamma_rate_d_altitude_d_altitude;
     hessian.alpha.altitude.velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
     hessian.alpha.altitude.altitude = -h.d2_gamma_rate_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by gamma.
+#[inline(always)]
+fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, i: &Intermediates<R>, h: &Curvatures<R>) {
     hessian.velocity.gamma.altitude = h.d2_velocity_rate_d_altitude_d_gamma;
     hessian.velocity.gamma.gamma = h.d2_velocity_rate_d_gamma_d_gamma;
     hessian.altitude.gamma.velocity = i.cos_gamma;
@@ -145,6 +146,11 @@ fn hessian_by_altitude_to_alpha<R: Real>(
     hessian.alpha.gamma.velocity = -h.d2_gamma_rate_d_velocity_d_gamma;
     hessian.alpha.gamma.altitude = -h.d2_gamma_rate_d_altitude_d_gamma;
     hessian.alpha.gamma.gamma = -h.d2_gamma_rate_d_gamma_d_gamma;
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha.
+#[inline(always)]
+fn hessian_by_alpha<R: Real>(hessian: &mut HessianEntries<R>, h: &Curvatures<R>) {
     hessian.velocity.alpha.velocity = h.d2_velocity_rate_d_velocity_d_alpha;
     hessian.velocity.alpha.altitude = h.d2_velocity_rate_d_altitude_d_alpha;
     hessian.velocity.alpha.alpha = h.d2_velocity_rate_d_alpha_d_alpha;
@@ -159,76 +165,59 @@ fn hessian_by_altitude_to_alpha<R: Real>(
     hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by chi_1, chi_2.
+/// Entries of [`hessian_values`]: derivatives by chi_1.
 #[inline(always)]
-fn hessian_by_chi_1_chi_2<R: Real>(
+fn hessian_by_chi_1<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to chi_1
     let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_chi_1 = i.cos_alpha * d2_thrust_d_velocity_d_chi_1
         - d2_drag_d_velocity_d_chi_1; // lb*s/ft^2.5/slug^0.5
     hessian.velocity.chi_1.velocity = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_thrust_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_chi_2 = i.cos_alpha * d2_thrust_d_velocity_d_chi_2
-        - d2_drag_d_velocity_d_chi_2; // lb*s/ft^2.5/slug^0.5
-    hessian.velocity.chi_2.velocity = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     let d2_thrust_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_chi_1 = i.cos_alpha * d2_thrust_d_altitude_d_chi_1
         - d2_drag_d_altitude_d_chi_1; // lb/ft^2.5/slug^0.5
     hessian.velocity.chi_1.altitude = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_thrust_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_chi_2 = i.cos_alpha * d2_thrust_d_altitude_d_chi_2
-        - d2_drag_d_altitude_d_chi_2; // lb/ft^2.5/slug^0.5
-    hessian.velocity.chi_2.altitude = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     hessian.gamma.chi_1.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_1; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.gamma.chi_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     hessian.gamma.chi_1.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_1; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.gamma.chi_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     let d2_pitching_moment_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_velocity_d_chi_1; // lb*s/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_1.velocity = d2_pitching_moment_d_velocity_d_chi_1 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_pitching_moment_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
-        + p.z_t * d2_thrust_d_velocity_d_chi_2; // lb*s/ft^1.5/slug^0.5
-    hessian.pitch_rate.chi_2.velocity = d2_pitching_moment_d_velocity_d_chi_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_1.altitude = d2_pitching_moment_d_altitude_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
-        + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
-    hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.velocity.chi_1.alpha = h.d2_velocity_rate_d_alpha_d_chi_1;
     hessian.gamma.chi_1.alpha = h.d2_force_turn_d_alpha_d_chi_1;
     hessian.alpha.chi_1.velocity = -hessian.gamma.chi_1.velocity;
     hessian.alpha.chi_1.altitude = -hessian.gamma.chi_1.altitude;
     hessian.alpha.chi_1.alpha = -h.d2_force_turn_d_alpha_d_chi_1;
+}
+
+/// Entries of [`hessian_values`]: derivatives by chi_2.
+#[inline(always)]
+fn hessian_by_chi_2<R: Real>(
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
+) {
+    let d2_thrust_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_chi_2 = i.cos_alpha * d2_thrust_d_velocity_d_chi_2
+        - d2_drag_d_velocity_d_chi_2; // lb*s/ft^2.5/slug^0.5
+    hessian.velocity.chi_2.velocity = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_thrust_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_chi_2 = i.cos_alpha * d2_thrust_d_altitude_d_chi_2
+        - d2_drag_d_altitude_d_chi_2; // lb/ft^2.5/slug^0.5
+    hessian.velocity.chi_2.altitude = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    hessian.gamma.chi_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
+    hessian.gamma.chi_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_velocity_d_chi_2; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_2.velocity = d2_pitching_moment_d_velocity_d_chi_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
     hessian.velocity.chi_2.alpha = h.d2_velocity_rate_d_alpha_d_chi_2;
     hessian.gamma.chi_2.alpha = h.d2_force_turn_d_alpha_d_chi_2;
     hessian.alpha.chi_2.velocity = -hessian.gamma.chi_2.velocity;
@@ -241,7 +230,6 @@ fn hessian_by_chi_1_chi_2<R: Real>(
 fn hessian_by_chi_3<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to chi_3
     let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_chi_3 = i.cos_alpha * d2_thrust_d_velocity_d_chi_3
@@ -260,7 +248,6 @@ fn hessian_by_chi_3<R: Real>(
     let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.altitude = d2_pitching_moment_d_altitude_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.velocity.chi_3.alpha = h.d2_velocity_rate_d_alpha_d_chi_3;
     hessian.gamma.chi_3.alpha = h.d2_force_turn_d_alpha_d_chi_3;
     hessian.alpha.chi_3.velocity = -hessian.gamma.chi_3.velocity;
@@ -280,8 +267,11 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> H
     let h = curvatures(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
     hessian_by_velocity(&mut hessian, p, &i, &s);
-    hessian_by_altitude_to_alpha(&mut hessian, p, &i, &s, &h);
-    hessian_by_chi_1_chi_2(&mut hessian, p, &i, &s, &h);
+    hessian_by_altitude(&mut hessian, p, &i, &s, &h);
+    hessian_by_gamma(&mut hessian, &i, &h);
+    hessian_by_alpha(&mut hessian, &h);
+    hessian_by_chi_1(&mut hessian, p, &i, &s, &h);
+    hessian_by_chi_2(&mut hessian, p, &i, &s, &h);
     hessian_by_chi_3(&mut hessian, p, &i, &s, &h);
     hessian
 }

@@ -31,15 +31,11 @@ ahv_core::entries! {
     }
 }
 
-/// [`jacobians_values`] where its stages are computed already.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-pub fn jacobians_values_from<R: Real>(
-    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
-    let mut state = StateJacobianEntries::splat(R::ZERO);
-    let mut input = InputJacobianEntries::splat(R::ZERO);
-
-    // Derivatives with respect to velocity
+fn jacobians_by_velocity<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_d_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
@@ -51,8 +47,15 @@ pub fn jacobians_values_from<R: Real>(
         * (i.c_m * s.d_reference_force_d_velocity + i.reference_force * s.d_c_m_d_velocity) + p.z_t
         * s.d_thrust_d_velocity; // lb*s/ft
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+}
 
-    // Derivatives with respect to altitude
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude
         + i.reference_force * s.d_c_d_d_altitude; // lb/ft^2
     let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
@@ -65,12 +68,77 @@ pub fn jacobians_values_from<R: Real>(
         * (i.c_m * s.d_reference_force_d_altitude + i.reference_force * s.d_c_m_d_altitude) + p.z_t
         * s.d_thrust_d_altitude; // lb/ft
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    state.alpha.altitude = -state.gamma.altitude;
+}
 
-    // Derivatives with respect to phi
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, s: &Slopes<R>) {
+    state.velocity.gamma = s.d_velocity_rate_d_gamma;
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.gamma.gamma = s.d_gamma_rate_d_gamma;
+    state.alpha.gamma = -s.d_gamma_rate_d_gamma;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(state: &mut StateJacobianEntries<R>, s: &Slopes<R>) {
+    state.velocity.alpha = s.d_velocity_rate_d_alpha;
+    state.gamma.alpha = s.d_force_turn_d_alpha;
+    state.alpha.alpha = -s.d_force_turn_d_alpha;
+    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by chi.
+#[inline(always)]
+fn jacobians_by_chi<R: Real>(state: &mut StateJacobianEntries<R>, p: &Prepared<R>, s: &Slopes<R>) {
+    state.velocity.chi_1 = s.d_velocity_rate_d_chi_1;
+    state.velocity.chi_2 = s.d_velocity_rate_d_chi_2;
+    state.velocity.chi_3 = s.d_velocity_rate_d_chi_3;
+    state.gamma.chi_1 = s.d_force_turn_d_chi_1;
+    state.gamma.chi_2 = s.d_force_turn_d_chi_2;
+    state.gamma.chi_3 = s.d_force_turn_d_chi_3;
+    state.alpha.chi_1 = -s.d_force_turn_d_chi_1;
+    state.alpha.chi_2 = -s.d_force_turn_d_chi_2;
+    state.alpha.chi_3 = -s.d_force_turn_d_chi_3;
+    state.pitch_rate.chi_1 = s.d_pitch_acceleration_d_chi_1;
+    state.pitch_rate.chi_2 = s.d_pitch_acceleration_d_chi_2;
+    state.pitch_rate.chi_3 = s.d_pitch_acceleration_d_chi_3;
+    state.chi_1.chi_1 = p.minus_chi_decay_1;
+    state.chi_2.chi_2 = p.minus_chi_decay_2;
+    state.chi_3.chi_3 = p.minus_chi_decay_3;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(state: &mut StateJacobianEntries<R>) {
+    state.alpha.pitch_rate = R::ONE;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi.
+#[inline(always)]
+fn jacobians_by_phi<R: Real>(input: &mut InputJacobianEntries<R>, p: &Prepared<R>, s: &Slopes<R>) {
     let d_pitching_moment_d_phi = p.z_t * s.d_thrust_d_phi; // lb
     input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.alpha.phi = -s.d_force_turn_d_phi;
+}
 
-    // Derivatives with respect to delta_c
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(input: &mut InputJacobianEntries<R>, s: &Slopes<R>) {
+    input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
+    input.gamma.delta_e = s.d_force_turn_d_delta_e;
+    input.alpha.delta_e = -s.d_force_turn_d_delta_e;
+    input.pitch_rate.delta_e = s.d_pitch_acceleration_d_delta_e;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_c.
+#[inline(always)]
+fn jacobians_by_delta_c<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
     let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
@@ -88,44 +156,27 @@ pub fn jacobians_values_from<R: Real>(
     let d_pitching_moment_d_delta_c = p.c_bar * i.reference_force * d_c_m_d_delta_c
         + p.z_t * d_thrust_d_delta_c; // lb/rad
     input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-
-    state.velocity.gamma = s.d_velocity_rate_d_gamma;
-    state.velocity.alpha = s.d_velocity_rate_d_alpha;
-    state.velocity.chi_1 = s.d_velocity_rate_d_chi_1;
-    state.velocity.chi_2 = s.d_velocity_rate_d_chi_2;
-    state.velocity.chi_3 = s.d_velocity_rate_d_chi_3;
-    state.altitude.velocity = i.sin_gamma;
-    state.altitude.gamma = s.d_altitude_rate_d_gamma;
-    state.gamma.gamma = s.d_gamma_rate_d_gamma;
-    state.gamma.alpha = s.d_force_turn_d_alpha;
-    state.gamma.chi_1 = s.d_force_turn_d_chi_1;
-    state.gamma.chi_2 = s.d_force_turn_d_chi_2;
-    state.gamma.chi_3 = s.d_force_turn_d_chi_3;
-    state.alpha.velocity = -state.gamma.velocity;
-    state.alpha.altitude = -state.gamma.altitude;
-    state.alpha.gamma = -s.d_gamma_rate_d_gamma;
-    state.alpha.alpha = -s.d_force_turn_d_alpha;
-    state.alpha.pitch_rate = R::ONE;
-    state.alpha.chi_1 = -s.d_force_turn_d_chi_1;
-    state.alpha.chi_2 = -s.d_force_turn_d_chi_2;
-    state.alpha.chi_3 = -s.d_force_turn_d_chi_3;
-    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
-    state.pitch_rate.chi_1 = s.d_pitch_acceleration_d_chi_1;
-    state.pitch_rate.chi_2 = s.d_pitch_acceleration_d_chi_2;
-    state.pitch_rate.chi_3 = s.d_pitch_acceleration_d_chi_3;
-    state.chi_1.chi_1 = p.minus_chi_decay_1;
-    state.chi_2.chi_2 = p.minus_chi_decay_2;
-    state.chi_3.chi_3 = p.minus_chi_decay_3;
-    input.velocity.phi = s.d_velocity_rate_d_phi;
-    input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
-    input.gamma.phi = s.d_force_turn_d_phi;
-    input.gamma.delta_e = s.d_force_turn_d_delta_e;
     input.gamma.delta_c = s.d_force_turn_d_delta_c;
-    input.alpha.phi = -s.d_force_turn_d_phi;
-    input.alpha.delta_e = -s.d_force_turn_d_delta_e;
     input.alpha.delta_c = -s.d_force_turn_d_delta_c;
-    input.pitch_rate.delta_e = s.d_pitch_acceleration_d_delta_e;
+}
+
+/// [`jacobians_values`] where its stages are computed already.
+#[inline(always)]
+pub fn jacobians_values_from<R: Real>(
+    _x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
+    let mut state = StateJacobianEntries::splat(R::ZERO);
+    let mut input = InputJacobianEntries::splat(R::ZERO);
+    jacobians_by_velocity(&mut state, p, i, s);
+    jacobians_by_altitude(&mut state, p, i, s);
+    jacobians_by_gamma(&mut state, s);
+    jacobians_by_alpha(&mut state, s);
+    jacobians_by_chi(&mut state, p, s);
+    jacobians_by_pitch_rate(&mut state);
+    jacobians_by_phi(&mut input, p, s);
+    jacobians_by_delta_e(&mut input, s);
+    jacobians_by_delta_c(&mut input, p, i, s);
     (state, input)
 }
 

@@ -54,7 +54,6 @@ pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepare
     let noise_derivatives_term_3 = p.shared_noise
         * (p.chi_diffusion_2 * h.d2_force_turn_d_alpha_d_chi_2 + p.chi_diffusion_3 * h.d2_force_turn_d_alpha_d_chi_3)
         + p.chi_diffusion_1 * h.d2_force_turn_d_alpha_d_chi_1;
-
     noise_derivatives.velocity.w_gamma.w_gamma = p.w_gamma_2
         * (h.d2_velocity_rate_d_altitude_d_gamma * s.d_altitude_rate_d_gamma
             + h.d2_velocity_rate_d_gamma_d_gamma * s.d_gamma_rate_d_gamma);

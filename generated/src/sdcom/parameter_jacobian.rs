@@ -52,7 +52,6 @@ ahv_core::entries! {
 fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_t_d_s = i.dynamic_pressure
         * (p.c_t_eta_1_inv_omega_1_2 * i.c_n_1 + p.c_t_eta_2_inv_omega_2_2 * i.c_n_2
             + p.c_t_eta_3_inv_omega_3_2 * i.c_n_3); // 1/ft
@@ -76,7 +75,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     let d_pitching_moment_d_s = p.c_bar
         * (i.c_m * i.dynamic_pressure + i.reference_force * d_c_m_d_s) + p.z_t * d_thrust_d_s; // lb/ft
     parameter.pitch_rate.s = d_pitching_moment_d_s * p.inv_i_yy; // rad/s^2/ft
-
     parameter.velocity.m = -i.path_force * p.inv_m_2;
     parameter.gamma.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.minus_half_inv_m_2;
     parameter.alpha.m = i.normal_coefficient * s.d_reference_force_d_velocity * p.half_inv_m_2;
@@ -91,7 +89,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
 fn parameter_jacobian_by_environment<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_d_d_rho_0 = p.s * i.density_ratio
         * (p.half_c_d_eta_1_times_inv_omega_1_2 * i.c_n_1 * i.velocity_2
             + p.half_c_d_eta_2_times_inv_omega_2_2 * i.c_n_2 * i.velocity_2
@@ -134,7 +131,6 @@ fn parameter_jacobian_by_environment<R: Real>(
         * (i.c_m * q.d_reference_force_d_h_s + i.reference_force * d_c_m_d_h_s) + p.z_t
         * q.d_thrust_d_h_s; // lb/ft
     parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy; // rad/s^2/ft
-
     parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
     parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
@@ -155,7 +151,6 @@ fn parameter_jacobian_by_environment<R: Real>(
 fn parameter_jacobian_by_modes<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_omega_1 = i.reference_force * p.inv_omega_1 * i.eta_static_1
         * (R::TWO * p.c_d_eta_1 - i.cos_alpha * p.two_c_t_eta_1); // lb*s/ft/rad
     parameter.velocity.omega_1 = d_path_force_d_omega_1 * p.inv_m; // ft/s/rad
@@ -192,7 +187,6 @@ fn parameter_jacobian_by_modes<R: Real>(
     parameter.chi_1.zeta_1 = -x.chi_1 * p.d_chi_decay_1_d_zeta_1; // (ft*slug)^0.5/s
     parameter.chi_2.zeta_2 = -x.chi_2 * p.d_chi_decay_2_d_zeta_2; // (ft*slug)^0.5/s
     parameter.chi_3.zeta_3 = -x.chi_3 * p.d_chi_decay_3_d_zeta_3; // (ft*slug)^0.5/s
-
     parameter.alpha.omega_1 = -parameter.gamma.omega_1;
     parameter.alpha.omega_2 = -parameter.gamma.omega_2;
     parameter.alpha.omega_3 = -parameter.gamma.omega_3;
@@ -204,7 +198,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_t_d_canard_command = i.reference_force
         * (p.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 * u.delta_c
             + p.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 * u.delta_c
@@ -270,7 +263,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter.chi_1.moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_2.moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_3.moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
-
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
     parameter.alpha.canard_command = -parameter.gamma.canard_command;
@@ -329,13 +321,12 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.pitch_rate.c_t_eta_3 = p.z_t_over_i_yy * i.reference_force * i.eta_3;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
 #[inline(always)]
-fn parameter_jacobian_by_c_l_c_d<R: Real>(
+fn parameter_jacobian_by_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_c_t_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
         * q.sum_of_c_t_eta_c_n_delta_c_inv_omega_2_delta_e; // rad
     let d_thrust_d_c_l_delta_e = i.reference_force * d_c_t_d_c_l_delta_e; // lb*rad/ft
@@ -383,7 +374,6 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     let d_pitching_moment_d_c_l_delta_c = p.c_bar * i.reference_force * d_c_m_d_c_l_delta_c
         + p.z_t * d_thrust_d_c_l_delta_c; // lb*rad
     parameter.pitch_rate.c_l_delta_c = d_pitching_moment_d_c_l_delta_c * p.inv_i_yy; // rad^2/s^2
-
     parameter.gamma.c_l_alpha = i.turn_factor * x.alpha;
     parameter.gamma.c_l_0 = i.turn_factor;
     parameter.gamma.c_l_eta_1 = i.turn_factor * i.eta_1;
@@ -396,6 +386,13 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter.alpha.c_l_eta_1 = -i.turn_factor * i.eta_1;
     parameter.alpha.c_l_eta_2 = -i.turn_factor * i.eta_2;
     parameter.alpha.c_l_eta_3 = -i.turn_factor * i.eta_3;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
     parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
     parameter.velocity.c_d_delta_e_2 = -i.reference_force * i.delta_e_2 * p.inv_m;
@@ -414,7 +411,6 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_c_n_1_alpha_2 = q.reference_force_2 * p.inv_omega_1_2
         * (i.cos_alpha * p.c_t_eta_1 * i.alpha_2 - p.c_d_eta_1 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     parameter.velocity.c_n_1_alpha_2 = d_path_force_d_c_n_1_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
@@ -461,7 +457,6 @@ fn parameter_jacobian_by_c_n_1<R: Real>(
     let d_pitching_moment_d_c_n_1_0 = p.c_bar_c_m_eta_1_plus_z_t_c_t_eta_1_times_inv_omega_1_2
         * q.reference_force_2; // lb*slug^0.5/ft^0.5
     parameter.pitch_rate.c_n_1_0 = d_pitching_moment_d_c_n_1_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.alpha.c_n_1_alpha_2 = -parameter.gamma.c_n_1_alpha_2;
     parameter.alpha.c_n_1_alpha = -parameter.gamma.c_n_1_alpha;
     parameter.alpha.c_n_1_delta_e = -parameter.gamma.c_n_1_delta_e;
@@ -475,7 +470,6 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_c_n_2_alpha_2 = q.reference_force_2 * p.inv_omega_2_2
         * (i.cos_alpha * p.c_t_eta_2 * i.alpha_2 - p.c_d_eta_2 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     parameter.velocity.c_n_2_alpha_2 = d_path_force_d_c_n_2_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
@@ -522,7 +516,6 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     let d_pitching_moment_d_c_n_2_0 = p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2_times_inv_omega_2_2
         * q.reference_force_2; // lb*slug^0.5/ft^0.5
     parameter.pitch_rate.c_n_2_0 = d_pitching_moment_d_c_n_2_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.alpha.c_n_2_alpha_2 = -parameter.gamma.c_n_2_alpha_2;
     parameter.alpha.c_n_2_alpha = -parameter.gamma.c_n_2_alpha;
     parameter.alpha.c_n_2_delta_e = -parameter.gamma.c_n_2_delta_e;
@@ -530,13 +523,12 @@ fn parameter_jacobian_by_c_n_2<R: Real>(
     parameter.alpha.c_n_2_0 = -parameter.gamma.c_n_2_0;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3.
 #[inline(always)]
-fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
+fn parameter_jacobian_by_c_n_3<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_path_force_d_c_n_3_alpha_2 = q.reference_force_2 * p.inv_omega_3_2
         * (i.cos_alpha * p.c_t_eta_3 * i.alpha_2 - p.c_d_eta_3 * i.alpha_2); // lb*slug^0.5*rad^2/ft^1.5
     parameter.velocity.c_n_3_alpha_2 = d_path_force_d_c_n_3_alpha_2 * p.inv_m; // ft^0.5*slug^0.5*rad^2/s^2
@@ -583,12 +575,18 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     let d_pitching_moment_d_c_n_3_0 = p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3_times_inv_omega_3_2
         * q.reference_force_2; // lb*slug^0.5/ft^0.5
     parameter.pitch_rate.c_n_3_0 = d_pitching_moment_d_c_n_3_0 * p.inv_i_yy; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.alpha.c_n_3_alpha_2 = -parameter.gamma.c_n_3_alpha_2;
     parameter.alpha.c_n_3_alpha = -parameter.gamma.c_n_3_alpha;
     parameter.alpha.c_n_3_delta_e = -parameter.gamma.c_n_3_delta_e;
     parameter.alpha.c_n_3_delta_c = -parameter.gamma.c_n_3_delta_c;
     parameter.alpha.c_n_3_0 = -parameter.gamma.c_n_3_0;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.pitch_rate.c_m_alpha_2 = p.c_bar_over_i_yy * i.reference_force * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = p.c_bar_over_i_yy * i.reference_force * x.alpha;
     parameter.pitch_rate.c_m_delta_e = p.c_bar_over_i_yy * i.reference_force * u.delta_e;
@@ -616,10 +614,12 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter_jacobian_by_modes(&mut parameter, x, p, &i);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, x, u, p, &i);
-    parameter_jacobian_by_c_l_c_d(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_l(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_d(&mut parameter, x, u, p, &i);
     parameter_jacobian_by_c_n_1(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_n_2(&mut parameter, x, u, p, &i, &s, &q);
-    parameter_jacobian_by_c_n_3_c_m(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_n_3(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_m(&mut parameter, x, u, p, &i);
     parameter
 }
 

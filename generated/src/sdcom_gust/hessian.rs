@@ -35,7 +35,6 @@ ahv_core::entries! {
 /// Entries of [`hessian_values`]: derivatives by velocity.
 #[inline(always)]
 fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_eta_static_1_d_velocity_d_velocity = d2_generalized_force_1_d_velocity_d_velocity
         * p.inv_omega_1_2; // slug^0.5*s^2/ft^1.5
@@ -81,17 +80,14 @@ fn hessian_by_velocity<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>
             + p.s * i.c_m * i.density + i.reference_force * d2_c_m_d_velocity_d_velocity)
         + p.z_t * d2_thrust_d_velocity_d_velocity; // lb*s^2/ft^2
     hessian.pitch_rate.velocity.velocity = d2_pitching_moment_d_velocity_d_velocity * p.inv_i_yy; // rad/ft^2
-
     hessian.alpha.velocity.velocity = -hessian.gamma.velocity.velocity;
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude, gamma.
+/// Entries of [`hessian_values`]: derivatives by altitude.
 #[inline(always)]
-fn hessian_by_altitude_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-    h: &Curvatures<R>,
+fn hessian_by_altitude<R: Real>(
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to altitude
     let d2_c_d_d_velocity_d_altitude = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
@@ -113,17 +109,6 @@ fn hessian_by_altitude_gamma<R: Real>(
         - d2_drag_d_altitude_d_altitude; // lb/ft^3
     hessian.velocity.altitude.altitude = d2_path_force_d_altitude_d_altitude * p.inv_m
         - i.sin_gamma * h.d2_gravity_d_altitude_d_altitude; // 1/s^2/ft
-
-    // Derivatives with respect to gamma
-    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
-    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
-    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
-    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
-    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
-    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
-    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
-    // Derivatives with respect to altitude
     let d2_c_m_d_velocity_d_altitude = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_m_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
         + p.c_m_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
@@ -143,57 +128,71 @@ fn hessian_by_altitude_gamma<R: Real>(
             + i.reference_force * d2_c_m_d_altitude_d_altitude)
         + p.z_t * h.d2_thrust_d_altitude_d_altitude; // lb/ft^2
     hessian.pitch_rate.altitude.altitude = d2_pitching_moment_d_altitude_d_altitude * p.inv_i_yy; // rad/s^2/ft^2
-
     hessian.gamma.altitude.velocity = h.d2_gamma_rate_d_velocity_d_altitude;
     hessian.gamma.altitude.altitude = h.d2_gamma_rate_d_altitude_d_altitude;
     hessian.alpha.altitude.velocity = -h.d2_gamma_rate_d_velocity_d_altitude;
     hessian.alpha.altitude.altitude = -h.d2_gamma_rate_d_altitude_d_altitude;
+}
+
+/// Entries of [`hessian_values`]: derivatives by gamma.
+#[inline(always)]
+fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &Intermediates<R>, s: &Slopes<R>) {
+    hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
+    hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
+    hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
+    hessian.gamma.gamma.velocity = -s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
+    hessian.gamma.gamma.altitude = -s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
+    let d2_cos_gamma_d_gamma_d_gamma = -i.cos_gamma; // 1/rad^2
+    hessian.gamma.gamma.gamma = -i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
     hessian.altitude.gamma.velocity = i.cos_gamma;
     hessian.alpha.gamma.velocity = -hessian.gamma.gamma.velocity;
     hessian.alpha.gamma.altitude = -hessian.gamma.gamma.altitude;
     hessian.alpha.gamma.gamma = -hessian.gamma.gamma.gamma;
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha, chi_1.
+/// Entries of [`hessian_values`]: derivatives by alpha.
 #[inline(always)]
-fn hessian_by_alpha_chi_1<R: Real>(
+fn hessian_by_alpha<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to alpha
     let d2_path_force_d_velocity_d_alpha = s.d_thrust_d_velocity * s.d_cos_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_velocity_d_alpha
         - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     hessian.velocity.alpha.velocity = d2_path_force_d_velocity_d_alpha * p.inv_m; // 1/s/rad
-
-    // Derivatives with respect to chi_1
-    let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_chi_1 = i.cos_alpha * d2_thrust_d_velocity_d_chi_1
-        - d2_drag_d_velocity_d_chi_1; // lb*s/ft^2.5/slug^0.5
-    hessian.velocity.chi_1.velocity = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
     let d2_path_force_d_altitude_d_alpha = s.d_thrust_d_altitude * s.d_cos_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_altitude_d_alpha
         - h.d2_drag_d_altitude_d_alpha; // lb/ft^2/rad
     hessian.velocity.alpha.altitude = d2_path_force_d_altitude_d_alpha * p.inv_m; // 1/s^2/rad
-
-    // Derivatives with respect to chi_1
-    let d2_thrust_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_drag_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
-    let d2_path_force_d_altitude_d_chi_1 = i.cos_alpha * d2_thrust_d_altitude_d_chi_1
-        - d2_drag_d_altitude_d_chi_1; // lb/ft^2.5/slug^0.5
-    hessian.velocity.chi_1.altitude = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to alpha
     let d2_cos_alpha_d_alpha_d_alpha = -i.cos_alpha; // 1/rad^2
     let d2_path_force_d_alpha_d_alpha = R::TWO * h.d_thrust_d_alpha_times_d_cos_alpha_d_alpha
         + i.thrust * d2_cos_alpha_d_alpha_d_alpha
         + h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     hessian.velocity.alpha.alpha = d2_path_force_d_alpha_d_alpha * p.inv_m; // ft/s^2/rad^2
+    hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
+    hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
+    hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
+    hessian.alpha.alpha.velocity = -h.d2_force_turn_d_velocity_d_alpha;
+    hessian.alpha.alpha.altitude = -h.d2_force_turn_d_altitude_d_alpha;
+    hessian.alpha.alpha.alpha = -h.d2_force_turn_d_alpha_d_alpha;
+    hessian.pitch_rate.alpha.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
+    hessian.pitch_rate.alpha.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
+    hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
+}
 
-    // Derivatives with respect to chi_1
+/// Entries of [`hessian_values`]: derivatives by chi_1.
+#[inline(always)]
+fn hessian_by_chi_1<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
+    let d2_thrust_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_t_eta_1; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_chi_1 = s.d_reference_force_d_velocity * p.c_d_eta_1; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_chi_1 = i.cos_alpha * d2_thrust_d_velocity_d_chi_1
+        - d2_drag_d_velocity_d_chi_1; // lb*s/ft^2.5/slug^0.5
+    hessian.velocity.chi_1.velocity = d2_path_force_d_velocity_d_chi_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    let d2_thrust_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_t_eta_1; // lb/ft^2.5/slug^0.5
+    let d2_drag_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_d_eta_1; // lb/ft^2.5/slug^0.5
+    let d2_path_force_d_altitude_d_chi_1 = i.cos_alpha * d2_thrust_d_altitude_d_chi_1
+        - d2_drag_d_altitude_d_chi_1; // lb/ft^2.5/slug^0.5
+    hessian.velocity.chi_1.altitude = d2_path_force_d_altitude_d_chi_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
     // lb/ft^1.5/rad/slug^0.5
     let d2_path_force_d_alpha_d_chi_1 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_1;
     hessian.velocity.chi_1.alpha = d2_path_force_d_alpha_d_chi_1 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
@@ -206,105 +205,66 @@ fn hessian_by_alpha_chi_1<R: Real>(
     let d2_pitching_moment_d_altitude_d_chi_1 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_1
         + p.z_t * d2_thrust_d_altitude_d_chi_1; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_1.altitude = d2_pitching_moment_d_altitude_d_chi_1 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    hessian.gamma.alpha.velocity = h.d2_force_turn_d_velocity_d_alpha;
-    hessian.gamma.alpha.altitude = h.d2_force_turn_d_altitude_d_alpha;
-    hessian.gamma.alpha.alpha = h.d2_force_turn_d_alpha_d_alpha;
-    hessian.alpha.alpha.velocity = -h.d2_force_turn_d_velocity_d_alpha;
-    hessian.alpha.alpha.altitude = -h.d2_force_turn_d_altitude_d_alpha;
-    hessian.alpha.alpha.alpha = -h.d2_force_turn_d_alpha_d_alpha;
-    hessian.pitch_rate.alpha.velocity = h.d2_pitch_acceleration_d_velocity_d_alpha;
-    hessian.pitch_rate.alpha.altitude = h.d2_pitch_acceleration_d_altitude_d_alpha;
-    hessian.pitch_rate.alpha.alpha = h.d2_pitch_acceleration_d_alpha_d_alpha;
     hessian.alpha.chi_1.velocity = -hessian.gamma.chi_1.velocity;
     hessian.alpha.chi_1.altitude = -hessian.gamma.chi_1.altitude;
     hessian.alpha.chi_1.alpha = -hessian.gamma.chi_1.alpha;
 }
 
-/// Entries of [`hessian_values`]: derivatives by chi_2, chi_3.
+/// Entries of [`hessian_values`]: derivatives by chi_2.
 #[inline(always)]
-fn hessian_by_chi_2_chi_3<R: Real>(
-    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to chi_2
+fn hessian_by_chi_2<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     let d2_thrust_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_t_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_drag_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_d_eta_2; // lb*s/ft^2.5/slug^0.5
     let d2_path_force_d_velocity_d_chi_2 = i.cos_alpha * d2_thrust_d_velocity_d_chi_2
         - d2_drag_d_velocity_d_chi_2; // lb*s/ft^2.5/slug^0.5
     hessian.velocity.chi_2.velocity = d2_path_force_d_velocity_d_chi_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
-    let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_drag_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
-    let d2_path_force_d_velocity_d_chi_3 = i.cos_alpha * d2_thrust_d_velocity_d_chi_3
-        - d2_drag_d_velocity_d_chi_3; // lb*s/ft^2.5/slug^0.5
-    hessian.velocity.chi_3.velocity = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
     let d2_thrust_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_t_eta_2; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_d_eta_2; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_chi_2 = i.cos_alpha * d2_thrust_d_altitude_d_chi_2
         - d2_drag_d_altitude_d_chi_2; // lb/ft^2.5/slug^0.5
     hessian.velocity.chi_2.altitude = d2_path_force_d_altitude_d_chi_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    // lb/ft^1.5/rad/slug^0.5
+    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2;
+    hessian.velocity.chi_2.alpha = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
+    hessian.gamma.chi_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
+    hessian.gamma.chi_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
+    hessian.gamma.chi_2.alpha = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
+    let d2_pitching_moment_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_velocity_d_chi_2; // lb*s/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_2.velocity = d2_pitching_moment_d_velocity_d_chi_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
+        + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    hessian.alpha.chi_2.velocity = -hessian.gamma.chi_2.velocity;
+    hessian.alpha.chi_2.altitude = -hessian.gamma.chi_2.altitude;
+    hessian.alpha.chi_2.alpha = -hessian.gamma.chi_2.alpha;
+}
 
-    // Derivatives with respect to chi_3
+/// Entries of [`hessian_values`]: derivatives by chi_3.
+#[inline(always)]
+fn hessian_by_chi_3<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
+    let d2_thrust_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_t_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_drag_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_d_eta_3; // lb*s/ft^2.5/slug^0.5
+    let d2_path_force_d_velocity_d_chi_3 = i.cos_alpha * d2_thrust_d_velocity_d_chi_3
+        - d2_drag_d_velocity_d_chi_3; // lb*s/ft^2.5/slug^0.5
+    hessian.velocity.chi_3.velocity = d2_path_force_d_velocity_d_chi_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
     let d2_thrust_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_t_eta_3; // lb/ft^2.5/slug^0.5
     let d2_drag_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_d_eta_3; // lb/ft^2.5/slug^0.5
     let d2_path_force_d_altitude_d_chi_3 = i.cos_alpha * d2_thrust_d_altitude_d_chi_3
         - d2_drag_d_altitude_d_chi_3; // lb/ft^2.5/slug^0.5
     hessian.velocity.chi_3.altitude = d2_path_force_d_altitude_d_chi_3 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    // lb/ft^1.5/rad/slug^0.5
-    let d2_path_force_d_alpha_d_chi_2 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_2;
-    hessian.velocity.chi_2.alpha = d2_path_force_d_alpha_d_chi_2 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_3
     // lb/ft^1.5/rad/slug^0.5
     let d2_path_force_d_alpha_d_chi_3 = s.d_cos_alpha_d_alpha * i.reference_force * p.c_t_eta_3;
     hessian.velocity.chi_3.alpha = d2_path_force_d_alpha_d_chi_3 * p.inv_m; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.gamma.chi_2.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
     hessian.gamma.chi_3.velocity = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_chi_3; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.gamma.chi_2.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
     hessian.gamma.chi_3.altitude = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_chi_3; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.gamma.chi_2.alpha = i.turn_factor * s.cos_alpha_c_t_eta_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_3
     hessian.gamma.chi_3.alpha = i.turn_factor * s.cos_alpha_c_t_eta_3; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_pitching_moment_d_velocity_d_chi_2 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_2
-        + p.z_t * d2_thrust_d_velocity_d_chi_2; // lb*s/ft^1.5/slug^0.5
-    hessian.pitch_rate.chi_2.velocity = d2_pitching_moment_d_velocity_d_chi_2 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
     let d2_pitching_moment_d_velocity_d_chi_3 = s.d_reference_force_d_velocity * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_velocity_d_chi_3; // lb*s/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.velocity = d2_pitching_moment_d_velocity_d_chi_3 * p.inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d2_pitching_moment_d_altitude_d_chi_2 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_2
-        + p.z_t * d2_thrust_d_altitude_d_chi_2; // lb/ft^1.5/slug^0.5
-    hessian.pitch_rate.chi_2.altitude = d2_pitching_moment_d_altitude_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_3
     let d2_pitching_moment_d_altitude_d_chi_3 = s.d_reference_force_d_altitude * p.c_bar_c_m_eta_3
         + p.z_t * d2_thrust_d_altitude_d_chi_3; // lb/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.altitude = d2_pitching_moment_d_altitude_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    hessian.alpha.chi_2.velocity = -hessian.gamma.chi_2.velocity;
-    hessian.alpha.chi_2.altitude = -hessian.gamma.chi_2.altitude;
-    hessian.alpha.chi_2.alpha = -hessian.gamma.chi_2.alpha;
     hessian.alpha.chi_3.velocity = -hessian.gamma.chi_3.velocity;
     hessian.alpha.chi_3.altitude = -hessian.gamma.chi_3.altitude;
     hessian.alpha.chi_3.alpha = -hessian.gamma.chi_3.alpha;
@@ -313,7 +273,6 @@ fn hessian_by_chi_2_chi_3<R: Real>(
 /// Entries of [`hessian_values`]: derivatives by alpha_gust.
 #[inline(always)]
 fn hessian_by_alpha_gust<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<R>, h: &Curvatures<R>) {
-    // Derivatives with respect to alpha_gust
     let d2_path_force_d_velocity_d_alpha_gust = h.cos_alpha_times_d2_thrust_d_velocity_d_alpha
         - h.d2_drag_d_velocity_d_alpha; // lb*s/ft^2/rad
     hessian.velocity.alpha_gust.velocity = d2_path_force_d_velocity_d_alpha_gust * p.inv_m; // 1/s/rad
@@ -327,7 +286,6 @@ fn hessian_by_alpha_gust<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<
     let d2_path_force_d_alpha_gust_d_alpha_gust = h.cos_alpha_times_d2_thrust_d_alpha_d_alpha
         - h.d2_drag_d_alpha_d_alpha; // lb/ft/rad^2
     hessian.velocity.alpha_gust.alpha_gust = d2_path_force_d_alpha_gust_d_alpha_gust * p.inv_m; // ft/s^2/rad^2
-
     hessian.gamma.alpha_gust.velocity = h.d2_force_turn_d_velocity_d_alpha_gust;
     hessian.gamma.alpha_gust.altitude = h.d2_force_turn_d_altitude_d_alpha_gust;
     hessian.gamma.alpha_gust.alpha = h.d2_force_turn_d_alpha_d_alpha_gust;
@@ -354,9 +312,12 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> H
     let h = curvatures(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
     hessian_by_velocity(&mut hessian, p, &i, &s);
-    hessian_by_altitude_gamma(&mut hessian, x, p, &i, &s, &h);
-    hessian_by_alpha_chi_1(&mut hessian, p, &i, &s, &h);
-    hessian_by_chi_2_chi_3(&mut hessian, p, &i, &s);
+    hessian_by_altitude(&mut hessian, p, &i, &s, &h);
+    hessian_by_gamma(&mut hessian, x, &i, &s);
+    hessian_by_alpha(&mut hessian, p, &i, &s, &h);
+    hessian_by_chi_1(&mut hessian, p, &i, &s);
+    hessian_by_chi_2(&mut hessian, p, &i, &s);
+    hessian_by_chi_3(&mut hessian, p, &i, &s);
     hessian_by_alpha_gust(&mut hessian, p, &h);
     hessian
 }

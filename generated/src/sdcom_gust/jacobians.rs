@@ -32,12 +32,11 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity, altitude, gamma, alpha, chi_1, chi_2.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-fn jacobians_by_velocity_to_chi_2<R: Real>(
+fn jacobians_by_velocity<R: Real>(
     state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to velocity
     let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_d_d_velocity; // lb*s/ft^2
     let d_path_force_d_velocity = i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity; // lb*s/ft^2
@@ -49,8 +48,15 @@ fn jacobians_by_velocity_to_chi_2<R: Real>(
         * (i.c_m * s.d_reference_force_d_velocity + i.reference_force * s.d_c_m_d_velocity) + p.z_t
         * s.d_thrust_d_velocity; // lb*s/ft
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy; // rad/s/ft
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+}
 
-    // Derivatives with respect to altitude
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude
         + i.reference_force * s.d_c_d_d_altitude; // lb/ft^2
     let d_path_force_d_altitude = i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude; // lb/ft^2
@@ -63,18 +69,37 @@ fn jacobians_by_velocity_to_chi_2<R: Real>(
         * (i.c_m * s.d_reference_force_d_altitude + i.reference_force * s.d_c_m_d_altitude) + p.z_t
         * s.d_thrust_d_altitude; // lb/ft
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy; // rad/s^2/ft
+    state.alpha.altitude = -state.gamma.altitude;
+}
 
-    // Derivatives with respect to gamma
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
+    state.altitude.gamma = s.d_altitude_rate_d_gamma;
+    state.alpha.gamma = -state.gamma.gamma;
+}
 
-    // Derivatives with respect to alpha
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_path_force_d_alpha = i.thrust * s.d_cos_alpha_d_alpha
         + s.cos_alpha_times_d_thrust_d_alpha
         - s.d_drag_d_alpha; // lb/ft/rad
     state.velocity.alpha = d_path_force_d_alpha * p.inv_m; // ft/s^2/rad
     state.gamma.alpha = i.turn_factor * s.d_normal_coefficient_d_alpha; // 1/s
+    state.alpha.alpha = -state.gamma.alpha;
+    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
+}
 
+/// Entries of [`jacobians_values`]: derivatives by chi.
+#[inline(always)]
+fn jacobians_by_chi<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to chi_1
     let d_path_force_d_chi_1 = i.reference_force * (s.cos_alpha_c_t_eta_1 - p.c_d_eta_1); // lb/ft^1.5/slug^0.5
     state.velocity.chi_1 = d_path_force_d_chi_1 * p.inv_m; // ft^0.5/s^2/slug^0.5
@@ -89,25 +114,6 @@ fn jacobians_by_velocity_to_chi_2<R: Real>(
     let d_pitching_moment_d_chi_2 = i.reference_force * p.c_bar_c_m_eta_2_plus_z_t_c_t_eta_2; // lb/ft^0.5/slug^0.5
     state.pitch_rate.chi_2 = d_pitching_moment_d_chi_2 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    state.altitude.velocity = i.sin_gamma;
-    state.alpha.velocity = -state.gamma.velocity;
-    state.alpha.altitude = -state.gamma.altitude;
-    state.altitude.gamma = s.d_altitude_rate_d_gamma;
-    state.alpha.gamma = -state.gamma.gamma;
-    state.alpha.alpha = -state.gamma.alpha;
-    state.pitch_rate.alpha = s.d_pitch_acceleration_d_alpha;
-    state.alpha.chi_1 = -state.gamma.chi_1;
-    state.chi_1.chi_1 = p.minus_chi_decay_1;
-    state.alpha.chi_2 = -state.gamma.chi_2;
-    state.chi_2.chi_2 = p.minus_chi_decay_2;
-}
-
-/// Entries of [`jacobians_values`]: derivatives by chi_3, alpha_gust, pitch_rate, phi, delta_e.
-#[inline(always)]
-fn jacobians_by_chi_3_to_delta_e<R: Real>(
-    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>,
-) {
     // Derivatives with respect to chi_3
     let d_path_force_d_chi_3 = i.reference_force * (s.cos_alpha_c_t_eta_3 - p.c_d_eta_3); // lb/ft^1.5/slug^0.5
     state.velocity.chi_3 = d_path_force_d_chi_3 * p.inv_m; // ft^0.5/s^2/slug^0.5
@@ -115,17 +121,51 @@ fn jacobians_by_chi_3_to_delta_e<R: Real>(
     let d_pitching_moment_d_chi_3 = i.reference_force * p.c_bar_c_m_eta_3_plus_z_t_c_t_eta_3; // lb/ft^0.5/slug^0.5
     state.pitch_rate.chi_3 = d_pitching_moment_d_chi_3 * p.inv_i_yy; // rad/s^2/ft^0.5/slug^0.5
 
-    // Derivatives with respect to alpha_gust
+    state.alpha.chi_1 = -state.gamma.chi_1;
+    state.alpha.chi_2 = -state.gamma.chi_2;
+    state.alpha.chi_3 = -state.gamma.chi_3;
+    state.chi_1.chi_1 = p.minus_chi_decay_1;
+    state.chi_2.chi_2 = p.minus_chi_decay_2;
+    state.chi_3.chi_3 = p.minus_chi_decay_3;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha_gust.
+#[inline(always)]
+fn jacobians_by_alpha_gust<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_path_force_d_alpha_gust = s.cos_alpha_times_d_thrust_d_alpha - s.d_drag_d_alpha; // lb/ft/rad
     state.velocity.alpha_gust = d_path_force_d_alpha_gust * p.inv_m; // ft/s^2/rad
     state.gamma.alpha_gust = i.turn_factor * s.d_normal_coefficient_d_alpha_gust; // 1/s
+    state.alpha.alpha_gust = -state.gamma.alpha_gust;
+    state.pitch_rate.alpha_gust = s.d_pitch_acceleration_d_alpha;
+    state.alpha_gust.alpha_gust = p.minus_over_gust_time;
+}
 
-    // Derivatives with respect to phi
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(state: &mut StateJacobianEntries<R>) {
+    state.alpha.pitch_rate = R::ONE;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi.
+#[inline(always)]
+fn jacobians_by_phi<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_thrust_d_phi = i.reference_force * i.c_t_phi; // lb/ft
     let d_pitching_moment_d_phi = p.z_t * d_thrust_d_phi; // lb
     input.pitch_rate.phi = d_pitching_moment_d_phi * p.inv_i_yy; // rad/s^2
+    input.velocity.phi = s.d_velocity_rate_d_phi;
+    input.gamma.phi = s.d_force_turn_d_phi;
+    input.alpha.phi = -s.d_force_turn_d_phi;
+}
 
-    // Derivatives with respect to delta_e
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_delta_e = d_generalized_force_1_d_delta_e * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
     let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -143,16 +183,6 @@ fn jacobians_by_chi_3_to_delta_e<R: Real>(
     let d_pitching_moment_d_delta_e = p.c_bar * i.reference_force * d_c_m_d_delta_e
         + p.z_t * d_thrust_d_delta_e; // lb/rad
     input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy; // 1/s^2
-
-    state.alpha.chi_3 = -state.gamma.chi_3;
-    state.chi_3.chi_3 = p.minus_chi_decay_3;
-    state.alpha.alpha_gust = -state.gamma.alpha_gust;
-    state.pitch_rate.alpha_gust = s.d_pitch_acceleration_d_alpha;
-    state.alpha_gust.alpha_gust = p.minus_over_gust_time;
-    state.alpha.pitch_rate = R::ONE;
-    input.velocity.phi = s.d_velocity_rate_d_phi;
-    input.gamma.phi = s.d_force_turn_d_phi;
-    input.alpha.phi = -s.d_force_turn_d_phi;
     input.velocity.delta_e = s.d_velocity_rate_d_delta_e;
     input.gamma.delta_e = s.d_force_turn_d_delta_e;
     input.alpha.delta_e = -s.d_force_turn_d_delta_e;
@@ -163,7 +193,6 @@ fn jacobians_by_chi_3_to_delta_e<R: Real>(
 fn jacobians_by_delta_c<R: Real>(
     input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_eta_static_1_d_delta_c = d_generalized_force_1_d_delta_c * p.inv_omega_1_2; // ft^0.5*slug^0.5/rad
     let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
@@ -181,7 +210,6 @@ fn jacobians_by_delta_c<R: Real>(
     let d_pitching_moment_d_delta_c = p.c_bar * i.reference_force * d_c_m_d_delta_c
         + p.z_t * d_thrust_d_delta_c; // lb/rad
     input.pitch_rate.delta_c = d_pitching_moment_d_delta_c * p.inv_i_yy; // 1/s^2
-
     input.velocity.delta_c = s.d_velocity_rate_d_delta_c;
     input.gamma.delta_c = s.d_force_turn_d_delta_c;
     input.alpha.delta_c = -s.d_force_turn_d_delta_c;
@@ -194,8 +222,15 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_chi_2(&mut state, p, i, s);
-    jacobians_by_chi_3_to_delta_e(&mut state, &mut input, p, i, s);
+    jacobians_by_velocity(&mut state, p, i, s);
+    jacobians_by_altitude(&mut state, p, i, s);
+    jacobians_by_gamma(&mut state, i, s);
+    jacobians_by_alpha(&mut state, p, i, s);
+    jacobians_by_chi(&mut state, p, i, s);
+    jacobians_by_alpha_gust(&mut state, p, i, s);
+    jacobians_by_pitch_rate(&mut state);
+    jacobians_by_phi(&mut input, p, i, s);
+    jacobians_by_delta_e(&mut input, p, i, s);
     jacobians_by_delta_c(&mut input, p, i, s);
     (state, input)
 }

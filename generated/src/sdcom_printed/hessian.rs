@@ -37,7 +37,6 @@ fn hessian_by_velocity<R: Real>(
     hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to velocity
     let d2_generalized_force_1_d_velocity_d_velocity = i.c_n_1 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_generalized_force_2_d_velocity_d_velocity = i.c_n_2 * p.s * i.density; // slug^0.5/ft^1.5
     let d2_generalized_force_3_d_velocity_d_velocity = i.c_n_3 * p.s * i.density; // slug^0.5/ft^1.5
@@ -131,13 +130,12 @@ fn hessian_by_velocity<R: Real>(
         + u.delta_e * d2_g_pitch_rate_d_velocity_d_velocity; // rad/ft^2
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude in row velocity, altitude in row gamma.
+/// Entries of [`hessian_values`]: derivatives by altitude in row velocity.
 #[inline(always)]
-fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
-    hessian: &mut HessianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+fn hessian_by_altitude_of_velocity<R: Real>(
+    hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to altitude
     let d_slope_of_f_velocity_eta_in_dynamic_pressure_d_altitude = p.s_over_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
             * s.d_generalized_force_1_d_altitude
@@ -178,6 +176,14 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
         h.d2_reference_force_d_altitude_d_altitude * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d2_f_velocity_d_altitude_d_altitude
         + u.phi * d2_g_velocity_d_altitude_d_altitude; // 1/s^2/ft
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude in row gamma.
+#[inline(always)]
+fn hessian_by_altitude_of_gamma<R: Real>(
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    h: &Curvatures<R>,
+) {
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_altitude = i
         .sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2
         * s.d_turn_factor_d_altitude; // rad*s/ft^1.5/slug^0.5
@@ -202,7 +208,7 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
         + s.d_generalized_force_3_d_velocity
         * d_slope_of_f_gamma_eta_in_generalized_force_3_d_altitude; // rad/ft^2
     let d2_f_gamma_d_velocity_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_velocity_d_altitude
+        i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_velocity_d_altitude
         - h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude
         + d2_f_gamma_eta_d_velocity_d_altitude; // rad/ft^2
     let d2_g_gamma_d_velocity_d_altitude = i
@@ -228,7 +234,7 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
         + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
         * h.d2_turn_factor_d_altitude_d_altitude; // rad/s/ft^2
     let d2_f_gamma_d_altitude_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_altitude_d_altitude
+        i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha * h.d2_turn_factor_d_altitude_d_altitude
         - h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude
         + d2_f_gamma_eta_d_altitude_d_altitude; // rad/s/ft^2
     let d2_g_gamma_d_altitude_d_altitude = i
@@ -240,12 +246,11 @@ fn hessian_by_altitude_of_velocity_altitude_of_gamma<R: Real>(
         + x.alpha * d2_g_gamma_d_altitude_d_altitude; // rad/s/ft^2
 }
 
-/// Entries of [`hessian_values`]: derivatives by altitude in row alpha, altitude in row pitch_rate.
+/// Entries of [`hessian_values`]: derivatives by altitude in row alpha.
 #[inline(always)]
-fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
-    hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, s: &Slopes<R>, h: &Curvatures<R>,
+fn hessian_by_altitude_of_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to altitude
     let d_slope_of_f_alpha_eta_in_turn_factor_d_altitude = -h
         .d_slope_of_f_gamma_eta_in_turn_factor_d_altitude; // rad/ft
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_altitude = -h
@@ -284,6 +289,13 @@ fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
         + d2_f_alpha_eta_d_altitude_d_altitude; // rad/s/ft^2
     hessian.alpha.altitude.altitude = s.slope_of_alpha_rate_printed_in_turn_factor
         * h.d2_turn_factor_d_altitude_d_altitude + d2_f_alpha_d_altitude_d_altitude; // rad/s/ft^2
+}
+
+/// Entries of [`hessian_values`]: derivatives by altitude in row pitch_rate.
+#[inline(always)]
+fn hessian_by_altitude_of_pitch_rate<R: Real>(
+    hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, s: &Slopes<R>, h: &Curvatures<R>,
+) {
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_1 = p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_omega_1_2
         * s.d_generalized_force_1_d_altitude;
     let d2_f_pitch_rate_eta_d_velocity_d_altitude_term_2 = p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_omega_2_2
@@ -346,7 +358,6 @@ fn hessian_by_altitude_of_alpha_altitude_of_pitch_rate<R: Real>(
 /// Entries of [`hessian_values`]: derivatives by gamma.
 #[inline(always)]
 fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to gamma
     hessian.velocity.gamma.altitude = -s.d_gravity_d_altitude * i.cos_gamma; // 1/s^2/rad
     hessian.velocity.gamma.gamma = -i.gravity * s.d_cos_gamma_d_gamma; // ft/s^2/rad^2
     hessian.altitude.gamma.gamma = x.velocity * s.d_cos_gamma_d_gamma; // ft/s/rad^2
@@ -357,7 +368,6 @@ fn hessian_by_gamma<R: Real>(hessian: &mut HessianEntries<R>, x: &State<R>, i: &
     hessian.alpha.gamma.velocity = s.d_gravity_turn_d_velocity * s.d_cos_gamma_d_gamma; // 1/ft
     hessian.alpha.gamma.altitude = s.d_gravity_turn_d_altitude * s.d_cos_gamma_d_gamma; // 1/s/ft
     hessian.alpha.gamma.gamma = i.gravity_turn * d2_cos_gamma_d_gamma_d_gamma; // 1/s/rad
-
     hessian.altitude.gamma.velocity = i.cos_gamma;
 }
 
@@ -367,7 +377,6 @@ fn hessian_by_alpha_of_velocity<R: Real>(
     hessian: &mut HessianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to alpha
     let d_slope_of_f_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
         * (i.cos_alpha * p.c_t_alpha - p.c_d_alpha
             + s.c_t_alpha_alpha_plus_c_t_0 * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
@@ -396,7 +405,7 @@ fn hessian_by_alpha_of_velocity<R: Real>(
         * d_slope_of_f_velocity_in_dynamic_pressure_d_alpha + d2_f_velocity_eta_d_velocity_d_alpha; // 1/s/rad
     let d_slope_of_g_velocity_in_dynamic_pressure_d_alpha = p.s_over_m
         * (i.cos_alpha * p.c_t_phi_alpha
-            + s.c_t_phi_alpha_alpha_plus_c_t_phi * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
+            + s.c_t_phi_alpha_alpha_plus_table_c_t_phi * s.d_cos_alpha_d_alpha); // ft^3/s^2/lb/rad
     let d2_g_velocity_d_velocity_d_alpha = s.d_dynamic_pressure_d_velocity
         * d_slope_of_g_velocity_in_dynamic_pressure_d_alpha; // 1/s/rad
     hessian.velocity.alpha.velocity =
@@ -454,8 +463,7 @@ fn hessian_by_alpha_of_gamma<R: Real>(
     hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
     h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to alpha
-    let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.c_t_phi_phi + p.c_t_0) * i.cos_alpha;
+    let d_slope_of_f_gamma_in_turn_factor_d_alpha = (i.table_c_t_phi_phi + p.c_t_0) * i.cos_alpha;
     let d_slope_of_f_gamma_eta_in_generalized_force_1_d_alpha = i.turn_factor
         * p.c_t_eta_1_inv_omega_1_2 * i.cos_alpha; // s/ft^0.5/slug^0.5
     let d_slope_of_f_gamma_eta_in_generalized_force_2_d_alpha = i.turn_factor
@@ -512,17 +520,16 @@ fn hessian_by_alpha_of_gamma<R: Real>(
         + x.alpha * d2_g_gamma_d_alpha_d_alpha; // 1/s/rad
 }
 
-/// Entries of [`hessian_values`]: derivatives by alpha in row alpha, alpha in row pitch_rate.
+/// Entries of [`hessian_values`]: derivatives by alpha in row alpha.
 #[inline(always)]
-fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
-    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-    h: &Curvatures<R>,
+fn hessian_by_alpha_of_alpha<R: Real>(
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to alpha
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_alpha = -h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_in_turn_factor_d_alpha = -(p.c_l_alpha
         + i.sin_alpha * s.c_t_alpha_plus_c_t_phi_alpha_phi
-        + i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+        + i
+            .c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0
             * i.cos_alpha);
     let d_slope_of_f_alpha_eta_in_turn_factor_d_alpha = -h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha;
     let d_slope_of_f_alpha_eta_in_generalized_force_1_d_alpha = -h
@@ -572,6 +579,14 @@ fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
         + d2_f_alpha_eta_d_alpha_d_alpha; // 1/s/rad
     hessian.alpha.alpha.alpha = s.slope_of_alpha_rate_printed_in_sin_alpha * s.d_cos_alpha_d_alpha
         + d2_f_alpha_d_alpha_d_alpha; // 1/s/rad
+}
+
+/// Entries of [`hessian_values`]: derivatives by alpha in row pitch_rate.
+#[inline(always)]
+fn hessian_by_alpha_of_pitch_rate<R: Real>(
+    hessian: &mut HessianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    h: &Curvatures<R>,
+) {
     let d_slope_of_f_pitch_rate_in_dynamic_pressure_d_alpha = p.s_over_i_yy
         * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha)); // ft^2/s^2/lb
@@ -604,86 +619,61 @@ fn hessian_by_alpha_of_alpha_alpha_of_pitch_rate<R: Real>(
         + d2_f_pitch_rate_eta_d_alpha_d_alpha; // 1/s^2/rad
 }
 
-/// Entries of [`hessian_values`]: derivatives by chi_1, chi_2.
+/// Entries of [`hessian_values`]: derivatives by chi_1.
 #[inline(always)]
-fn hessian_by_chi_1_chi_2<R: Real>(
+fn hessian_by_chi_1<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to chi_1
     hessian.velocity.chi_1.velocity = s.d_reference_force_d_velocity
         * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.velocity.chi_2.velocity = s.d_reference_force_d_velocity
-        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     hessian.velocity.chi_1.altitude = s.d_reference_force_d_altitude
         * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
-    hessian.velocity.chi_2.altitude = s.d_reference_force_d_altitude
-        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_1
     let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1 = i.reference_force
         * p.c_t_eta_1_over_m; // ft^0.5/s^2/slug^0.5
     hessian.velocity.chi_1.alpha = s.d_cos_alpha_d_alpha
         * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_1; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_2
-    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
-        * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
-    hessian.velocity.chi_2.alpha = s.d_cos_alpha_d_alpha
-        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
-
-    // Derivatives with respect to chi_1
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1 = -i
         .sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^0.5/slug^0.5
     hessian.alpha.chi_1.velocity = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/ft^1.5/slug^0.5
+    hessian.alpha.chi_1.altitude = s.d_turn_factor_d_altitude
+        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
+    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
+    hessian.alpha.chi_1.alpha = i.cos_alpha * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
+    hessian.pitch_rate.chi_1.velocity = s.d_reference_force_d_velocity
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
+    hessian.pitch_rate.chi_1.altitude = s.d_reference_force_d_altitude
+        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
+    hessian.gamma.chi_1.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_1;
+    hessian.gamma.chi_1.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_1;
+    hessian.gamma.chi_1.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_1;
+}
 
-    // Derivatives with respect to chi_2
+/// Entries of [`hessian_values`]: derivatives by chi_2.
+#[inline(always)]
+fn hessian_by_chi_2<R: Real>(
+    hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
+) {
+    hessian.velocity.chi_2.velocity = s.d_reference_force_d_velocity
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s/ft^0.5/slug^0.5
+    hessian.velocity.chi_2.altitude = s.d_reference_force_d_altitude
+        * i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * p.inv_m; // 1/s^2/ft^0.5/slug^0.5
+    let d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2 = i.reference_force
+        * p.c_t_eta_2_over_m; // ft^0.5/s^2/slug^0.5
+    hessian.velocity.chi_2.alpha = s.d_cos_alpha_d_alpha
+        * d_slope_of_velocity_rate_printed_in_cos_alpha_d_chi_2; // ft^0.5/s^2/rad/slug^0.5
     let d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2 = -i
         .sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^0.5/slug^0.5
     hessian.alpha.chi_2.velocity = s.d_turn_factor_d_velocity
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_1
-    hessian.alpha.chi_1.altitude = s.d_turn_factor_d_altitude
-        * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_1; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
     hessian.alpha.chi_2.altitude = s.d_turn_factor_d_altitude
         * d_slope_of_alpha_rate_printed_in_turn_factor_d_chi_2; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_1
-    let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1 = -i.turn_factor * p.c_t_eta_1; // rad/s/ft^0.5/slug^0.5
-    hessian.alpha.chi_1.alpha = i.cos_alpha * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_1; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_2
     let d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2 = -i.turn_factor * p.c_t_eta_2; // rad/s/ft^0.5/slug^0.5
     hessian.alpha.chi_2.alpha = i.cos_alpha * d_slope_of_alpha_rate_printed_in_sin_alpha_d_chi_2; // 1/s/ft^0.5/slug^0.5
-
-    // Derivatives with respect to chi_1
-    hessian.pitch_rate.chi_1.velocity = s.d_reference_force_d_velocity
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
     hessian.pitch_rate.chi_2.velocity = s.d_reference_force_d_velocity
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_1
-    hessian.pitch_rate.chi_1.altitude = s.d_reference_force_d_altitude
-        * p.z_t_c_t_eta_1_plus_c_bar_c_m_eta_1_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    // Derivatives with respect to chi_2
     hessian.pitch_rate.chi_2.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_2_plus_c_bar_c_m_eta_2_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
-    hessian.gamma.chi_1.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_1;
-    hessian.gamma.chi_1.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_1;
-    hessian.gamma.chi_1.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_1;
     hessian.gamma.chi_2.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_2;
     hessian.gamma.chi_2.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_2;
     hessian.gamma.chi_2.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_2;
@@ -694,7 +684,6 @@ fn hessian_by_chi_1_chi_2<R: Real>(
 fn hessian_by_chi_3<R: Real>(
     hessian: &mut HessianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to chi_3
     hessian.velocity.chi_3.velocity = s.d_reference_force_d_velocity
         * i.cos_alpha_c_t_eta_3_minus_c_d_eta_3 * p.inv_m; // 1/s/ft^0.5/slug^0.5
     hessian.velocity.chi_3.altitude = s.d_reference_force_d_altitude
@@ -715,7 +704,6 @@ fn hessian_by_chi_3<R: Real>(
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s/ft^1.5/slug^0.5
     hessian.pitch_rate.chi_3.altitude = s.d_reference_force_d_altitude
         * p.z_t_c_t_eta_3_plus_c_bar_c_m_eta_3_times_inv_i_yy; // rad/s^2/ft^1.5/slug^0.5
-
     hessian.gamma.chi_3.velocity = h.d2_gamma_rate_printed_d_velocity_d_chi_3;
     hessian.gamma.chi_3.altitude = h.d2_gamma_rate_printed_d_altitude_d_chi_3;
     hessian.gamma.chi_3.alpha = h.d2_gamma_rate_printed_d_alpha_d_chi_3;
@@ -733,13 +721,17 @@ pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> H
     let h = curvatures(x, u, p, &i, &s);
     let mut hessian = HessianEntries::splat(R::ZERO);
     hessian_by_velocity(&mut hessian, u, p, &i, &s, &h);
-    hessian_by_altitude_of_velocity_altitude_of_gamma(&mut hessian, x, u, p, &i, &s, &h);
-    hessian_by_altitude_of_alpha_altitude_of_pitch_rate(&mut hessian, u, p, &s, &h);
+    hessian_by_altitude_of_velocity(&mut hessian, u, p, &i, &s, &h);
+    hessian_by_altitude_of_gamma(&mut hessian, x, p, &i, &s, &h);
+    hessian_by_altitude_of_alpha(&mut hessian, p, &s, &h);
+    hessian_by_altitude_of_pitch_rate(&mut hessian, u, p, &s, &h);
     hessian_by_gamma(&mut hessian, x, &i, &s);
     hessian_by_alpha_of_velocity(&mut hessian, u, p, &i, &s, &h);
     hessian_by_alpha_of_gamma(&mut hessian, x, p, &i, &s, &h);
-    hessian_by_alpha_of_alpha_alpha_of_pitch_rate(&mut hessian, x, p, &i, &s, &h);
-    hessian_by_chi_1_chi_2(&mut hessian, p, &i, &s, &h);
+    hessian_by_alpha_of_alpha(&mut hessian, p, &i, &s, &h);
+    hessian_by_alpha_of_pitch_rate(&mut hessian, x, p, &i, &s, &h);
+    hessian_by_chi_1(&mut hessian, p, &i, &s, &h);
+    hessian_by_chi_2(&mut hessian, p, &i, &s, &h);
     hessian_by_chi_3(&mut hessian, p, &i, &s, &h);
     hessian
 }

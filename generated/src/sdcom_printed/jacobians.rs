@@ -37,7 +37,6 @@ fn jacobians_by_velocity<R: Real>(
     state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
-    // Derivatives with respect to velocity
     let d_f_velocity_eta_d_velocity = i.reference_force * p.inv_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
             * s.d_generalized_force_1_d_velocity
@@ -62,7 +61,7 @@ fn jacobians_by_velocity<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_velocity; // rad/ft
     let cos_gamma_times_d_gravity_turn_d_velocity = i.cos_gamma * s.d_gravity_turn_d_velocity;
     let d_f_gamma_d_velocity =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_velocity
+        i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_velocity
         - cos_gamma_times_d_gravity_turn_d_velocity
         + d_f_gamma_eta_d_velocity; // rad/ft
     state.gamma.velocity =
@@ -98,17 +97,15 @@ fn jacobians_by_velocity<R: Real>(
         s.d_reference_force_d_velocity * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_velocity
         + u.delta_e * d_g_pitch_rate_d_velocity; // rad/s/ft
-
     state.altitude.velocity = i.sin_gamma;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by altitude, gamma.
+/// Entries of [`jacobians_values`]: derivatives by altitude.
 #[inline(always)]
-fn jacobians_by_altitude_gamma<R: Real>(
+fn jacobians_by_altitude<R: Real>(
     state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
-    // Derivatives with respect to altitude
     let d_f_velocity_eta_d_altitude = i.reference_force * p.inv_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
             * s.d_generalized_force_1_d_altitude
@@ -135,7 +132,7 @@ fn jacobians_by_altitude_gamma<R: Real>(
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * s.d_generalized_force_3_d_altitude; // rad/s/ft
     let cos_gamma_times_d_gravity_turn_d_altitude = i.cos_gamma * s.d_gravity_turn_d_altitude;
     let d_f_gamma_d_altitude =
-        i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_altitude
+        i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha * s.d_turn_factor_d_altitude
         - cos_gamma_times_d_gravity_turn_d_altitude
         + d_f_gamma_eta_d_altitude; // rad/s/ft
     state.gamma.altitude =
@@ -171,22 +168,23 @@ fn jacobians_by_altitude_gamma<R: Real>(
         s.d_reference_force_d_altitude * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_altitude
         + u.delta_e * d_g_pitch_rate_d_altitude; // rad/s^2/ft
+}
 
-    // Derivatives with respect to gamma
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     state.velocity.gamma = -i.gravity * i.cos_gamma; // ft/s^2/rad
     state.gamma.gamma = -i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
     state.alpha.gamma = i.gravity_turn * s.d_cos_gamma_d_gamma; // 1/s
-
     state.altitude.gamma = s.d_altitude_rate_d_gamma;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by alpha, chi_1, chi_2, chi_3, pitch_rate, phi, delta_e.
+/// Entries of [`jacobians_values`]: derivatives by alpha.
 #[inline(always)]
-fn jacobians_by_alpha_to_delta_e<R: Real>(
-    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, x: &State<R>, u: &Input<R>,
-    p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+fn jacobians_by_alpha<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>,
 ) {
-    // Derivatives with respect to alpha
     let d_f_velocity_eta_d_alpha = i.reference_force * p.inv_m
         * (p.inv_omega_1_2 * i.cos_alpha_c_t_eta_1_minus_c_d_eta_1
             * s.d_generalized_force_1_d_alpha
@@ -233,12 +231,51 @@ fn jacobians_by_alpha_to_delta_e<R: Real>(
         * (p.z_t * s.c_t_alpha_plus_c_t_phi_alpha_phi
             + p.c_bar * (p.two_c_m_alpha_2 * x.alpha + p.c_m_alpha))
         + d_f_pitch_rate_eta_d_alpha; // 1/s^2
+}
 
-    // Derivatives with respect to phi
-    input.alpha.phi = -i.turn_factor * i.sin_alpha * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s
-    input.pitch_rate.phi = i.reference_force * p.z_t_over_i_yy * s.c_t_phi_alpha_alpha_plus_c_t_phi; // rad/s^2
+/// Entries of [`jacobians_values`]: derivatives by chi.
+#[inline(always)]
+fn jacobians_by_chi<R: Real>(state: &mut StateJacobianEntries<R>, p: &Prepared<R>, s: &Slopes<R>) {
+    state.velocity.chi_1 = s.d_velocity_rate_printed_d_chi_1;
+    state.velocity.chi_2 = s.d_velocity_rate_printed_d_chi_2;
+    state.velocity.chi_3 = s.d_velocity_rate_printed_d_chi_3;
+    state.gamma.chi_1 = s.d_gamma_rate_printed_d_chi_1;
+    state.gamma.chi_2 = s.d_gamma_rate_printed_d_chi_2;
+    state.gamma.chi_3 = s.d_gamma_rate_printed_d_chi_3;
+    state.alpha.chi_1 = s.d_alpha_rate_printed_d_chi_1;
+    state.alpha.chi_2 = s.d_alpha_rate_printed_d_chi_2;
+    state.alpha.chi_3 = s.d_alpha_rate_printed_d_chi_3;
+    state.pitch_rate.chi_1 = s.d_pitch_rate_rate_printed_d_chi_1;
+    state.pitch_rate.chi_2 = s.d_pitch_rate_rate_printed_d_chi_2;
+    state.pitch_rate.chi_3 = s.d_pitch_rate_rate_printed_d_chi_3;
+    state.chi_1.chi_1 = p.minus_chi_decay_1;
+    state.chi_2.chi_2 = p.minus_chi_decay_2;
+    state.chi_3.chi_3 = p.minus_chi_decay_3;
+}
 
-    // Derivatives with respect to delta_e
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(state: &mut StateJacobianEntries<R>) {
+    state.alpha.pitch_rate = R::ONE;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by phi.
+#[inline(always)]
+fn jacobians_by_phi<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    input.alpha.phi = -i.turn_factor * i.sin_alpha * s.c_t_phi_alpha_alpha_plus_table_c_t_phi; // rad/s
+    input.pitch_rate.phi = i.reference_force * p.z_t_over_i_yy
+        * s.c_t_phi_alpha_alpha_plus_table_c_t_phi; // rad/s^2
+    input.velocity.phi = i.g_velocity;
+    input.gamma.phi = s.d_gamma_rate_printed_d_phi;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_generalized_force_1_d_delta_e = i.reference_force * p.d_c_n_1_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_e = i.reference_force * p.d_c_n_2_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_e = i.reference_force * p.d_c_n_3_d_delta_e; // ft^0.5*slug^0.5/s^2/rad
@@ -251,25 +288,6 @@ fn jacobians_by_alpha_to_delta_e<R: Real>(
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_e
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_e; // 1/s^2
     input.pitch_rate.delta_e = i.g_pitch_rate + d_f_pitch_rate_eta_d_delta_e; // 1/s^2
-
-    state.velocity.chi_1 = s.d_velocity_rate_printed_d_chi_1;
-    state.gamma.chi_1 = s.d_gamma_rate_printed_d_chi_1;
-    state.alpha.chi_1 = s.d_alpha_rate_printed_d_chi_1;
-    state.pitch_rate.chi_1 = s.d_pitch_rate_rate_printed_d_chi_1;
-    state.chi_1.chi_1 = p.minus_chi_decay_1;
-    state.velocity.chi_2 = s.d_velocity_rate_printed_d_chi_2;
-    state.gamma.chi_2 = s.d_gamma_rate_printed_d_chi_2;
-    state.alpha.chi_2 = s.d_alpha_rate_printed_d_chi_2;
-    state.pitch_rate.chi_2 = s.d_pitch_rate_rate_printed_d_chi_2;
-    state.chi_2.chi_2 = p.minus_chi_decay_2;
-    state.velocity.chi_3 = s.d_velocity_rate_printed_d_chi_3;
-    state.gamma.chi_3 = s.d_gamma_rate_printed_d_chi_3;
-    state.alpha.chi_3 = s.d_alpha_rate_printed_d_chi_3;
-    state.pitch_rate.chi_3 = s.d_pitch_rate_rate_printed_d_chi_3;
-    state.chi_3.chi_3 = p.minus_chi_decay_3;
-    state.alpha.pitch_rate = R::ONE;
-    input.velocity.phi = i.g_velocity;
-    input.gamma.phi = s.d_gamma_rate_printed_d_phi;
     input.velocity.delta_e = s.d_f_velocity_d_delta_e;
     input.gamma.delta_e = s.d_f_gamma_eta_d_delta_e;
 }
@@ -279,7 +297,6 @@ fn jacobians_by_alpha_to_delta_e<R: Real>(
 fn jacobians_by_delta_c<R: Real>(
     input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_3_d_delta_c = i.reference_force * p.c_n_3_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
@@ -291,7 +308,6 @@ fn jacobians_by_delta_c<R: Real>(
         s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * d_generalized_force_1_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2 * d_generalized_force_2_d_delta_c
         + s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2 * d_generalized_force_3_d_delta_c; // 1/s^2
-
     input.velocity.delta_c = s.d_f_velocity_eta_d_delta_c;
     input.gamma.delta_c = s.d_f_gamma_eta_d_delta_c;
 }
@@ -304,8 +320,13 @@ pub fn jacobians_values_from<R: Real>(
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
     jacobians_by_velocity(&mut state, x, u, p, i, s);
-    jacobians_by_altitude_gamma(&mut state, x, u, p, i, s);
-    jacobians_by_alpha_to_delta_e(&mut state, &mut input, x, u, p, i, s);
+    jacobians_by_altitude(&mut state, x, u, p, i, s);
+    jacobians_by_gamma(&mut state, i, s);
+    jacobians_by_alpha(&mut state, x, u, p, i, s);
+    jacobians_by_chi(&mut state, p, s);
+    jacobians_by_pitch_rate(&mut state);
+    jacobians_by_phi(&mut input, p, i, s);
+    jacobians_by_delta_e(&mut input, p, i, s);
     jacobians_by_delta_c(&mut input, p, i, s);
     (state, input)
 }

@@ -51,7 +51,6 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
     let sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_generalized_force_inv_omega_2 =
         i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 * i.generalized_force_1_inv_omega_1_2
         + i.cos_alpha_c_t_eta_2_minus_c_d_eta_2 * i.generalized_force_2_inv_omega_2_2
@@ -64,13 +63,13 @@ fn parameter_jacobian_by_vehicle<R: Real>(
         - p.c_d_0;
     let d_f_velocity_d_m = d_f_velocity_eta_d_m
         - d_f_velocity_d_m_term_1 * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
-    let d_g_velocity_d_m = -s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha * i.reference_force
-        * p.inv_m_2; // ft^2/s^2/slug
+    let d_g_velocity_d_m = -s.c_t_phi_alpha_alpha_plus_table_c_t_phi * i.cos_alpha
+        * i.reference_force * p.inv_m_2; // ft^2/s^2/slug
     parameter.velocity.m = d_f_velocity_d_m
         - i.reference_force * p.inv_m_2 * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + u.phi * d_g_velocity_d_m; // ft^2/s^2/slug
     let d_f_gamma_d_m = -s.d_reference_force_d_velocity * p.inv_m_2
-        * (R::HALF * i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * (R::HALF * i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha
             + R::HALF
                 * i
                     .sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2); // rad*ft/s/slug
@@ -90,7 +89,7 @@ fn parameter_jacobian_by_vehicle<R: Real>(
         + p.c_m_alpha * x.alpha
         + p.c_m_0;
     let d_f_pitch_rate_d_i_yy_term_1 = p.z_t
-        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0 + p.c_bar
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0 + p.c_bar
         * c_m_alpha_2_alpha_2_plus_c_m_alpha_alpha_plus_c_m_0;
     let d_f_pitch_rate_d_i_yy = d_f_pitch_rate_eta_d_i_yy
         - d_f_pitch_rate_d_i_yy_term_1 * i.reference_force * p.inv_i_yy_2; // rad/s^2/slug/ft
@@ -107,8 +106,8 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2 * i.c_n_3); // 1/s^2
     let d_f_velocity_d_s = d_f_velocity_d_m_term_1 * i.dynamic_pressure * p.inv_m
         + d_f_velocity_eta_d_s; // 1/s^2
-    let d_g_velocity_d_s = s.c_t_phi_alpha_alpha_plus_c_t_phi * i.cos_alpha * i.dynamic_pressure
-        * p.inv_m; // 1/s^2
+    let d_g_velocity_d_s = s.c_t_phi_alpha_alpha_plus_table_c_t_phi * i.cos_alpha
+        * i.dynamic_pressure * p.inv_m; // 1/s^2
     parameter.velocity.s =
         i.dynamic_pressure * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_s
@@ -119,7 +118,7 @@ fn parameter_jacobian_by_vehicle<R: Real>(
             + s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3)
         + i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
             * s.d_dynamic_pressure_d_velocity * p.half_over_m; // rad/s/ft
-    let d_f_gamma_d_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+    let d_f_gamma_d_s = i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * s.d_dynamic_pressure_d_velocity * p.half_over_m + d_f_gamma_eta_d_s; // rad/s/ft
     parameter.gamma.s = s.d_dynamic_pressure_d_velocity * p.inv_m
         * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi
@@ -163,20 +162,18 @@ fn parameter_jacobian_by_vehicle<R: Real>(
     let d_f_pitch_rate_eta_d_z_t = i.reference_force * p.inv_i_yy
         * s.sum_of_generalized_force_inv_omega_2_c_t_eta; // rad/s^2/ft
     let d_f_pitch_rate_d_z_t = i.reference_force * p.inv_i_yy
-        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_c_t_phi_phi_plus_c_t_0
+        * i.c_t_phi_alpha_phi_alpha_plus_c_t_alpha_alpha_plus_table_c_t_phi_phi_plus_c_t_0
         + d_f_pitch_rate_eta_d_z_t; // rad/s^2/ft
     parameter.pitch_rate.z_t = i.reference_force * p.inv_i_yy * s.sum_of_chi_c_t_eta
         + d_f_pitch_rate_d_z_t; // rad/s^2/ft
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row velocity, environment in row
-/// gamma.
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row velocity.
 #[inline(always)]
-fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, q: &Sensitivities<R>,
+fn parameter_jacobian_by_environment_of_velocity<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_f_velocity_eta_d_rho_0 = i.density_ratio
         * (p.s
             * (s.d_velocity_rate_printed_d_chi_1 * p.half_inv_omega_1_2 * i.c_n_1
@@ -193,22 +190,6 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
             * i.velocity_2
             + R::HALF * u.phi * s.slope_of_g_velocity_in_dynamic_pressure * i.velocity_2)
         + d_f_velocity_d_rho_0; // ft^4/s^2/slug
-    let d_f_gamma_eta_d_rho_0 = p.s * i.density_ratio
-        * (i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
-            * p.half_over_m * x.velocity
-            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_1 * i.c_n_1
-                * i.velocity_2
-            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_2 * i.c_n_2
-                * i.velocity_2
-            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3
-                * i.velocity_2); // rad*ft^3/s/slug
-    let d_f_gamma_d_rho_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha * p.half_s_over_m
-        * x.velocity * i.density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
-    parameter.gamma.rho_0 = p.s_over_m * i.density_ratio
-        * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * x.velocity
-            + R::HALF * x.alpha
-                * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-                * x.velocity) + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
     let d_f_velocity_eta_d_h_0 =
         s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_0
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_0
@@ -221,18 +202,6 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
         q.d_reference_force_d_h_0 * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_0
         + u.phi * d_g_velocity_d_h_0; // 1/s^2
-    let d_f_gamma_eta_d_h_0 =
-        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * q.d_turn_factor_d_h_0
-        + s.slope_of_f_gamma_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_0
-        + s.slope_of_f_gamma_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_0
-        + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
-    let d_f_gamma_d_h_0 = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
-        * q.d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
-    let d_g_gamma_d_h_0 = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
-        * q.d_turn_factor_d_h_0; // 1/s/ft
-    parameter.gamma.h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_0
-        + d_f_gamma_d_h_0
-        + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
     let d_f_velocity_eta_d_h_s =
         s.slope_of_f_velocity_eta_in_dynamic_pressure * q.d_dynamic_pressure_d_h_s
         + s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_s
@@ -245,12 +214,51 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
         q.d_reference_force_d_h_s * p.inv_m * s.sum_of_cos_alpha_c_t_eta_minus_c_d_eta_times_chi
         + d_f_velocity_d_h_s
         + u.phi * d_g_velocity_d_h_s; // 1/s^2
+    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
+    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
+        * q.slope_of_radius_ratio_in_earth_curvature;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row gamma.
+#[inline(always)]
+fn parameter_jacobian_by_environment_of_gamma<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    q: &Sensitivities<R>,
+) {
+    let d_f_gamma_eta_d_rho_0 = p.s * i.density_ratio
+        * (i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2
+            * p.half_over_m * x.velocity
+            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_1 * i.c_n_1
+                * i.velocity_2
+            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_2 * i.c_n_2
+                * i.velocity_2
+            + R::HALF * s.slope_of_f_gamma_eta_in_generalized_force_3 * i.c_n_3
+                * i.velocity_2); // rad*ft^3/s/slug
+    let d_f_gamma_d_rho_0 = i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * p.half_s_over_m * x.velocity * i.density_ratio + d_f_gamma_eta_d_rho_0; // rad*ft^3/s/slug
+    parameter.gamma.rho_0 = p.s_over_m * i.density_ratio
+        * (R::HALF * i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * x.velocity
+            + R::HALF * x.alpha
+                * i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+                * x.velocity) + d_f_gamma_d_rho_0; // rad*ft^3/s/slug
+    let d_f_gamma_eta_d_h_0 =
+        i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * q.d_turn_factor_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_0
+        + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_gamma_d_h_0 = i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+        * q.d_turn_factor_d_h_0 + d_f_gamma_eta_d_h_0; // rad/s/ft
+    let d_g_gamma_d_h_0 = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
+        * q.d_turn_factor_d_h_0; // 1/s/ft
+    parameter.gamma.h_0 = i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_chi * q.d_turn_factor_d_h_0
+        + d_f_gamma_d_h_0
+        + x.alpha * d_g_gamma_d_h_0; // rad/s/ft
     let d_f_gamma_eta_d_h_s =
         i.sum_of_sin_alpha_c_t_eta_plus_c_l_eta_times_generalized_force_inv_omega_2 * q.d_turn_factor_d_h_s
         + s.slope_of_f_gamma_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_s
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_s
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
-    let d_f_gamma_d_h_s = i.c_l_0_plus_c_t_phi_phi_plus_c_t_0_times_sin_alpha
+    let d_f_gamma_d_h_s = i.c_l_0_plus_table_c_t_phi_phi_plus_c_t_0_times_sin_alpha
         * q.d_turn_factor_d_h_s + d_f_gamma_eta_d_h_s; // rad/s/ft
     let d_g_gamma_d_h_s = i.c_l_alpha_plus_c_t_alpha_plus_c_t_phi_alpha_phi_times_sin_alpha
         * q.d_turn_factor_d_h_s; // 1/s/ft
@@ -258,21 +266,15 @@ fn parameter_jacobian_by_environment_of_velocity_environment_of_gamma<R: Real>(
         + d_f_gamma_d_h_s
         + x.alpha * d_g_gamma_d_h_s; // rad/s/ft
     parameter.gamma.r_e = -i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
-
-    parameter.velocity.g = -i.sin_gamma * i.radius_ratio_2;
-    parameter.velocity.r_e = i.sin_gamma * p.two_g_earth_curvature_over_r_e * i.radius_ratio
-        * q.slope_of_radius_ratio_in_earth_curvature;
     parameter.gamma.g = -i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row alpha, environment in row
-/// pitch_rate.
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row alpha.
 #[inline(always)]
-fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>(
-    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, q: &Sensitivities<R>,
+fn parameter_jacobian_by_environment_of_alpha<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_f_alpha_eta_d_rho_0 = p.s * i.density_ratio
         * (s.slope_of_f_alpha_eta_in_turn_factor * p.half_over_m * x.velocity
             + R::HALF * s.slope_of_f_alpha_eta_in_generalized_force_1 * i.c_n_1
@@ -285,6 +287,32 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
         * i.density_ratio + d_f_alpha_eta_d_rho_0; // rad*ft^3/s/slug
     parameter.alpha.rho_0 = s.slope_of_alpha_rate_printed_in_turn_factor * p.half_s_over_m
         * x.velocity * i.density_ratio + d_f_alpha_d_rho_0; // rad*ft^3/s/slug
+    let d_f_alpha_eta_d_h_0 = s.slope_of_f_alpha_eta_in_turn_factor * q.d_turn_factor_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_0
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
+    let d_f_alpha_d_h_0 = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_0
+        + d_f_alpha_eta_d_h_0; // rad/s/ft
+    parameter.alpha.h_0 = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_0
+        + d_f_alpha_d_h_0; // rad/s/ft
+    let d_f_alpha_eta_d_h_s = s.slope_of_f_alpha_eta_in_turn_factor * q.d_turn_factor_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_s
+        + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
+    let d_f_alpha_d_h_s = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_s
+        + d_f_alpha_eta_d_h_s; // rad/s/ft
+    parameter.alpha.h_s = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_s
+        + d_f_alpha_d_h_s; // rad/s/ft
+    parameter.alpha.r_e = i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
+    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment in row pitch_rate.
+#[inline(always)]
+fn parameter_jacobian_by_environment_of_pitch_rate<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    q: &Sensitivities<R>,
+) {
     let d_f_pitch_rate_eta_d_rho_0 = p.s * i.density_ratio
         * (p.half_over_i_yy
             * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
@@ -302,14 +330,6 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
             * i.velocity_2
             + u.delta_e * p.half_slope_of_g_pitch_rate_in_dynamic_pressure
                 * i.velocity_2) + d_f_pitch_rate_d_rho_0; // rad*ft^3/s^2/slug
-    let d_f_alpha_eta_d_h_0 = s.slope_of_f_alpha_eta_in_turn_factor * q.d_turn_factor_d_h_0
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_0
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_0
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_0; // rad/s/ft
-    let d_f_alpha_d_h_0 = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_0
-        + d_f_alpha_eta_d_h_0; // rad/s/ft
-    parameter.alpha.h_0 = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_0
-        + d_f_alpha_d_h_0; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_0 = q.d_reference_force_d_h_0 * p.inv_i_yy
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_0
@@ -323,14 +343,6 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
         q.d_reference_force_d_h_0 * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_0
         + u.delta_e * d_g_pitch_rate_d_h_0; // rad/s^2/ft
-    let d_f_alpha_eta_d_h_s = s.slope_of_f_alpha_eta_in_turn_factor * q.d_turn_factor_d_h_s
-        + s.slope_of_f_alpha_eta_in_generalized_force_1 * q.d_generalized_force_1_d_h_s
-        + s.slope_of_f_alpha_eta_in_generalized_force_2 * q.d_generalized_force_2_d_h_s
-        + s.slope_of_f_alpha_eta_in_generalized_force_3 * q.d_generalized_force_3_d_h_s; // rad/s/ft
-    let d_f_alpha_d_h_s = s.slope_of_f_alpha_in_turn_factor * q.d_turn_factor_d_h_s
-        + d_f_alpha_eta_d_h_s; // rad/s/ft
-    parameter.alpha.h_s = s.slope_of_alpha_rate_printed_in_turn_factor * q.d_turn_factor_d_h_s
-        + d_f_alpha_d_h_s; // rad/s/ft
     let d_f_pitch_rate_eta_d_h_s = q.d_reference_force_d_h_s * p.inv_i_yy
         * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_generalized_force_inv_omega_2
         + s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2 * q.d_generalized_force_1_d_h_s
@@ -344,9 +356,6 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
         q.d_reference_force_d_h_s * p.inv_i_yy * s.sum_of_z_t_c_t_eta_plus_c_bar_c_m_eta_times_chi
         + d_f_pitch_rate_d_h_s
         + u.delta_e * d_g_pitch_rate_d_h_s; // rad/s^2/ft
-    parameter.alpha.r_e = i.cos_gamma * q.d_gravity_turn_d_r_e; // rad/s/ft
-
-    parameter.alpha.g = i.cos_gamma * i.radius_ratio_2 * i.inv_velocity;
 }
 
 /// Entries of [`parameter_jacobian_values`]: derivatives by modes.
@@ -354,7 +363,6 @@ fn parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate<R: Real>
 fn parameter_jacobian_by_modes<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
     parameter.velocity.omega_1 = s.d_velocity_rate_printed_d_chi_1
         * i.generalized_force_1_inv_omega_1_2 * p.minus_two_over_omega_1; // ft/s/rad
     parameter.gamma.omega_1 = s.d_gamma_rate_printed_d_chi_1 * i.generalized_force_1_inv_omega_1_2
@@ -390,7 +398,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     parameter.velocity.canard_command = i.reference_force
         * (s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2_c_n_1_delta_c * u.delta_c
             + s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2_c_n_2_delta_c
@@ -444,7 +451,6 @@ fn parameter_jacobian_by_choices<R: Real>(
     parameter.chi_1.moment_matching = -x.chi_1 * p.d_chi_decay_1_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_2.moment_matching = -x.chi_2 * p.d_chi_decay_2_d_moment_matching; // (ft*slug)^0.5/s
     parameter.chi_3.moment_matching = -x.chi_3 * p.d_chi_decay_3_d_moment_matching; // (ft*slug)^0.5/s
-
     parameter.velocity.spherical_earth = i.sin_gamma * p.minus_two_g_over_r_e * i.radius_ratio
         * q.slope_of_radius_ratio_in_earth_curvature;
 }
@@ -455,7 +461,6 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     parameter.velocity.c_t_eta_1 = i.reference_force * p.inv_m * i.cos_alpha
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
     parameter.gamma.c_t_eta_1 = i.turn_factor * i.sin_alpha
@@ -477,7 +482,6 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.alpha.c_t_eta_3 = -parameter.gamma.c_t_eta_3; // rad*ft^0.5*slug^0.5/s
     parameter.pitch_rate.c_t_eta_3 = i.reference_force * p.z_t_over_i_yy
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
-
     parameter.velocity.c_t_phi_alpha = u.phi * i.reference_force * p.inv_m * i.cos_alpha * x.alpha;
     parameter.velocity.c_t_phi = u.phi * i.reference_force * p.inv_m * i.cos_alpha;
     parameter.velocity.c_t_alpha = i.reference_force * p.inv_m * i.cos_alpha * x.alpha;
@@ -496,13 +500,12 @@ fn parameter_jacobian_by_c_t<R: Real>(
     parameter.pitch_rate.c_t_0 = i.reference_force * p.z_t_over_i_yy;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_l, c_d.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
 #[inline(always)]
-fn parameter_jacobian_by_c_l_c_d<R: Real>(
+fn parameter_jacobian_by_c_l<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, q: &Sensitivities<R>,
 ) {
-    // Derivatives with respect to parameters
     let d_f_velocity_eta_d_c_l_delta_e = -p.canard_slaving_over_c_l_delta_c * i.reference_force
         * q.sum_of_d_velocity_rate_printed_d_chi_times_inv_omega_2_c_n_delta_c_times_delta_e; // ft*rad/s^2
     parameter.velocity.c_l_delta_e = i.reference_force
@@ -540,30 +543,36 @@ fn parameter_jacobian_by_c_l_c_d<R: Real>(
     parameter.alpha.c_l_eta_2 = -parameter.gamma.c_l_eta_2; // rad*ft^0.5*slug^0.5/s
     parameter.gamma.c_l_eta_3 = i.turn_factor * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s
     parameter.alpha.c_l_eta_3 = -parameter.gamma.c_l_eta_3; // rad*ft^0.5*slug^0.5/s
+    parameter.gamma.c_l_alpha = x.alpha * i.turn_factor;
+    parameter.gamma.c_l_0 = i.turn_factor;
+    parameter.alpha.c_l_alpha = -x.alpha * i.turn_factor;
+    parameter.alpha.c_l_0 = -i.turn_factor;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    q: &Sensitivities<R>,
+) {
     parameter.velocity.c_d_eta_1 = -i.reference_force * p.inv_m
         * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // ft^1.5*slug^0.5/s^2
     parameter.velocity.c_d_eta_2 = -i.reference_force * p.inv_m
         * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // ft^1.5*slug^0.5/s^2
     parameter.velocity.c_d_eta_3 = -i.reference_force * p.inv_m
         * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // ft^1.5*slug^0.5/s^2
-
-    parameter.gamma.c_l_alpha = x.alpha * i.turn_factor;
-    parameter.gamma.c_l_0 = i.turn_factor;
-    parameter.alpha.c_l_alpha = -x.alpha * i.turn_factor;
-    parameter.alpha.c_l_0 = -i.turn_factor;
     parameter.velocity.c_d_alpha = -i.reference_force * p.inv_m * x.alpha;
     parameter.velocity.c_d_delta_e = -i.reference_force * p.inv_m * u.delta_e;
     parameter.velocity.c_d_delta_c = -i.reference_force * p.canard_gain_over_m * u.delta_e;
     parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1, c_n_2.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_1.
 #[inline(always)]
-fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
+fn parameter_jacobian_by_c_n_1<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
     parameter.velocity.c_n_1_alpha_2 = s.d_velocity_rate_printed_d_chi_1 * p.inv_omega_1_2
         * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
     parameter.pitch_rate.c_n_1_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
@@ -584,6 +593,26 @@ fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
         * i.reference_force; // (ft*slug)^0.5/s^2
     parameter.pitch_rate.c_n_1_0 = s.d_pitch_rate_rate_printed_d_chi_1 * p.inv_omega_1_2
         * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
+    parameter.gamma.c_n_1_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
+    parameter.gamma.c_n_1_alpha = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * x.alpha;
+    parameter.gamma.c_n_1_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
+    parameter.gamma.c_n_1_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force
+        * i.canard_deflection;
+    parameter.gamma.c_n_1_0 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force;
+    parameter.alpha.c_n_1_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
+    parameter.alpha.c_n_1_alpha = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * x.alpha;
+    parameter.alpha.c_n_1_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
+    parameter.alpha.c_n_1_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force
+        * i.canard_deflection;
+    parameter.alpha.c_n_1_0 = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_2.
+#[inline(always)]
+fn parameter_jacobian_by_c_n_2<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    s: &Slopes<R>,
+) {
     parameter.velocity.c_n_2_alpha_2 = s.d_velocity_rate_printed_d_chi_2 * p.inv_omega_2_2
         * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
     parameter.pitch_rate.c_n_2_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
@@ -604,19 +633,6 @@ fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
         * i.reference_force; // (ft*slug)^0.5/s^2
     parameter.pitch_rate.c_n_2_0 = s.d_pitch_rate_rate_printed_d_chi_2 * p.inv_omega_2_2
         * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
-
-    parameter.gamma.c_n_1_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
-    parameter.gamma.c_n_1_alpha = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * x.alpha;
-    parameter.gamma.c_n_1_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
-    parameter.gamma.c_n_1_delta_c = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force
-        * i.canard_deflection;
-    parameter.gamma.c_n_1_0 = s.slope_of_f_gamma_eta_in_generalized_force_1 * i.reference_force;
-    parameter.alpha.c_n_1_alpha_2 = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * i.alpha_2;
-    parameter.alpha.c_n_1_alpha = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * x.alpha;
-    parameter.alpha.c_n_1_delta_e = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force * u.delta_e;
-    parameter.alpha.c_n_1_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force
-        * i.canard_deflection;
-    parameter.alpha.c_n_1_0 = s.slope_of_f_alpha_eta_in_generalized_force_1 * i.reference_force;
     parameter.gamma.c_n_2_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * i.alpha_2;
     parameter.gamma.c_n_2_alpha = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * x.alpha;
     parameter.gamma.c_n_2_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_2 * i.reference_force * u.delta_e;
@@ -631,19 +647,12 @@ fn parameter_jacobian_by_c_n_1_c_n_2<R: Real>(
     parameter.alpha.c_n_2_0 = s.slope_of_f_alpha_eta_in_generalized_force_2 * i.reference_force;
 }
 
-/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3, c_m.
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_n_3.
 #[inline(always)]
-fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
+fn parameter_jacobian_by_c_n_3<R: Real>(
     parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, q: &Sensitivities<R>,
+    s: &Slopes<R>,
 ) {
-    // Derivatives with respect to parameters
-    parameter.pitch_rate.c_m_eta_1 = i.reference_force * p.c_bar_over_i_yy
-        * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
-    parameter.pitch_rate.c_m_eta_2 = i.reference_force * p.c_bar_over_i_yy
-        * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
-    parameter.pitch_rate.c_m_eta_3 = i.reference_force * p.c_bar_over_i_yy
-        * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
     parameter.velocity.c_n_3_alpha_2 = s.d_velocity_rate_printed_d_chi_3 * p.inv_omega_3_2
         * i.reference_force * i.alpha_2; // ft^0.5*slug^0.5*rad^2/s^2
     parameter.pitch_rate.c_n_3_alpha_2 = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
@@ -664,7 +673,6 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
         * i.reference_force; // (ft*slug)^0.5/s^2
     parameter.pitch_rate.c_n_3_0 = s.d_pitch_rate_rate_printed_d_chi_3 * p.inv_omega_3_2
         * i.reference_force; // rad*slug^0.5/s^2/ft^0.5
-
     parameter.gamma.c_n_3_alpha_2 = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * i.alpha_2;
     parameter.gamma.c_n_3_alpha = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * x.alpha;
     parameter.gamma.c_n_3_delta_e = s.slope_of_f_gamma_eta_in_generalized_force_3 * i.reference_force * u.delta_e;
@@ -677,6 +685,20 @@ fn parameter_jacobian_by_c_n_3_c_m<R: Real>(
     parameter.alpha.c_n_3_delta_c = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force
         * i.canard_deflection;
     parameter.alpha.c_n_3_0 = s.slope_of_f_alpha_eta_in_generalized_force_3 * i.reference_force;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+    q: &Sensitivities<R>,
+) {
+    parameter.pitch_rate.c_m_eta_1 = i.reference_force * p.c_bar_over_i_yy
+        * q.generalized_force_1_inv_omega_1_2_plus_chi_1; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_m_eta_2 = i.reference_force * p.c_bar_over_i_yy
+        * q.generalized_force_2_inv_omega_2_2_plus_chi_2; // rad*ft^0.5*slug^0.5/s^2
+    parameter.pitch_rate.c_m_eta_3 = i.reference_force * p.c_bar_over_i_yy
+        * q.generalized_force_3_inv_omega_3_2_plus_chi_3; // rad*ft^0.5*slug^0.5/s^2
     parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
     parameter.pitch_rate.c_m_delta_e = u.delta_e * i.reference_force * p.c_bar_over_i_yy;
@@ -697,14 +719,19 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let q = sensitivities(x, u, p, &i, &s, &h);
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
     parameter_jacobian_by_vehicle(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_environment_of_velocity_environment_of_gamma(&mut parameter, x, u, p, &i, &s, &q);
-    parameter_jacobian_by_environment_of_alpha_environment_of_pitch_rate(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_environment_of_velocity(&mut parameter, u, p, &i, &s, &q);
+    parameter_jacobian_by_environment_of_gamma(&mut parameter, x, p, &i, &s, &q);
+    parameter_jacobian_by_environment_of_alpha(&mut parameter, x, p, &i, &s, &q);
+    parameter_jacobian_by_environment_of_pitch_rate(&mut parameter, u, p, &i, &s, &q);
     parameter_jacobian_by_modes(&mut parameter, x, p, &i, &s);
     parameter_jacobian_by_choices(&mut parameter, x, u, p, &i, &s, &q);
     parameter_jacobian_by_c_t(&mut parameter, x, u, p, &i, &q);
-    parameter_jacobian_by_c_l_c_d(&mut parameter, x, u, p, &i, &s, &q);
-    parameter_jacobian_by_c_n_1_c_n_2(&mut parameter, x, u, p, &i, &s);
-    parameter_jacobian_by_c_n_3_c_m(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_l(&mut parameter, x, u, p, &i, &s, &q);
+    parameter_jacobian_by_c_d(&mut parameter, x, u, p, &i, &q);
+    parameter_jacobian_by_c_n_1(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_c_n_2(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_c_n_3(&mut parameter, x, u, p, &i, &s);
+    parameter_jacobian_by_c_m(&mut parameter, x, u, p, &i, &q);
     parameter
 }
 

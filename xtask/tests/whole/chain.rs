@@ -110,32 +110,38 @@ fn terms_in(folder: &Path) -> usize {
 #[test]
 fn a_new_monomial_is_a_few_lines_a_term() {
     let scratch = Scratch::new();
-    let before = scratch.path("before");
-    copy(&scratch.path("generated"), &before);
-    for table in [DCOM, "generator/tables/com.toml"] {
-        let entry = "[C_L]\n\"alpha^2\" = { value = 0.5, unit = \"1/rad^2\" }\n";
-        scratch.edit(table, "[C_L]\n", entry);
+    for (fit, monomial, unit) in [
+        ("C_L", "alpha^2", "1/rad^2"),
+        ("C_M", "alpha^3", "1/rad^3"),
+        ("C_D", "alpha^2*delta_e", "1/rad^3"),
+    ] {
+        let before = scratch.path(&format!("before {fit}"));
+        copy(&scratch.path("generated"), &before);
+        for table in [DCOM, "generator/tables/com.toml"] {
+            let entry = format!("[{fit}]\n\"{monomial}\" = {{ value = 0.5, unit = \"{unit}\" }}\n");
+            scratch.edit(table, &format!("[{fit}]\n"), &entry);
+        }
+        assert_eq!(scratch.generate(&[]).code, 0);
+        let (before, after) = (before.join("src"), scratch.path("generated/src"));
+        let terms = terms_in(&after) - terms_in(&before);
+        let mut git = Command::new("git");
+        git.args(["diff", "--no-index", "--numstat"])
+            .args([&before, &after]);
+        let answer = crate::common::answer(&mut git);
+        assert_eq!(answer.code, 1, "{}", answer.stderr);
+        let inserted = answer
+            .stdout
+            .lines()
+            .filter_map(|line| line.split('\t').next()?.parse::<usize>().ok());
+        let lines: usize = inserted.sum();
+        println!("{fit} {monomial}: {lines} lines for {terms} terms");
+        assert!(terms > 50, "{terms} terms");
+        assert!(
+            lines <= LINES_A_TERM * terms,
+            "{fit} {monomial}: {lines} lines for {terms} terms:\n{}",
+            answer.stdout
+        );
     }
-    assert_eq!(scratch.generate(&[]).code, 0);
-    let (before, after) = (before.join("src"), scratch.path("generated/src"));
-    let terms = terms_in(&after) - terms_in(&before);
-    let mut git = Command::new("git");
-    git.args(["diff", "--no-index", "--numstat"])
-        .args([&before, &after]);
-    let answer = crate::common::answer(&mut git);
-    assert_eq!(answer.code, 1, "{}", answer.stderr);
-    let inserted = answer
-        .stdout
-        .lines()
-        .filter_map(|line| line.split('\t').next()?.parse::<usize>().ok());
-    let lines: usize = inserted.sum();
-    println!("{lines} lines for {terms} terms");
-    assert!(terms > 50, "{terms} terms");
-    assert!(
-        lines <= LINES_A_TERM * terms,
-        "{lines} lines for {terms} terms:\n{}",
-        answer.stdout
-    );
 }
 
 /// What the new term must add, in closed form: q S c alpha^2 / (m V) to the rate of gamma.

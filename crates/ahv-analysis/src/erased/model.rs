@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
 use nalgebra::{DMatrix, DVector};
 
+use super::rows;
 use super::steppers::{self, Advance, DeterministicScheme, StepperError};
 use super::{AnyModel, Components, ParameterValues, values, vector};
 use crate::covariance::{CovarianceError, Flight, Spreading};
@@ -129,6 +130,10 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
 
     fn drift(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
         values(&model::<M>(p).drift(&vector(x), &vector(u)))
+    }
+
+    fn drifts(&self, p: &[f64], x: &[f64], u: &[f64], rates: &mut [f64]) {
+        rows::drifts(&model::<M>(p), x, u, rates);
     }
 
     fn jacobians(&self, p: &[f64], x: &[f64], u: &[f64]) -> [DMatrix<f64>; 2] {

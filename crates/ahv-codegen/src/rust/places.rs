@@ -23,7 +23,9 @@ pub(super) fn placed(body: &Body, places: &[Option<String>]) -> Body {
     for statement in &mut statements {
         place(statement, &own);
     }
-    if !statements.is_empty() {
+    let is_heading = |it: &Statement| matches!(it, Statement::Section(_));
+    if statements.iter().any(is_heading) {
+        // What follows belongs to none.
         statements.push(Statement::Section(String::new()));
     }
     let mut results = Vec::new();
@@ -35,7 +37,7 @@ pub(super) fn placed(body: &Body, places: &[Option<String>]) -> Body {
             Some(place) => statements.push(set(place.clone(), value, String::new())),
         }
     }
-    while matches!(statements.last(), Some(Statement::Section(_))) {
+    while statements.last().is_some_and(is_heading) {
         statements.pop();
     }
     Body {

@@ -254,6 +254,20 @@ fn hoisting_leaves_parameters_to_prepare() {
 }
 
 #[test]
+fn a_parameter_with_the_name_of_a_quantity_is_told_from_it() {
+    let quantities = quantity("d", r#"["+", "x.a", "p.d"]"#);
+    let roots = [r#"["*", 2.0, "p.d"]"#, r#"["*", "d", "d", "d", "p.d"]"#];
+    let emitted = emitted(&quantities, &roots, &Passes::default());
+    let names: Vec<_> = emitted.prepare.1.iter().map(|it| it.0.as_str()).collect();
+    assert!(names.contains(&"two_table_d"), "{names:?}");
+    let ours = emitted.statements.join("\n");
+    assert!(
+        ours.contains("let d = ") && !ours.contains("two_d"),
+        "{ours}"
+    );
+}
+
+#[test]
 fn regrouping_of_sums_shares_factors_and_joins_parameters() {
     let sine = quantity("q", r#"["sin", "x.a"]"#);
     let root = r#"["+", ["*", "p.d", "q"], ["*", "x.b", "q"], ["*", "u.c", "q"], "p.e", "p.f"]"#;

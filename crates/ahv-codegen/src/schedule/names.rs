@@ -88,6 +88,12 @@ impl Names<'_> {
         if let Some(position) = self.quantity(id) {
             return Some(self.model.quantities[position].name.clone());
         }
+        if let Node::Leaf(_, name) = self.dag.node(id)
+            && self.model.quantities.iter().any(|it| it.name == *name)
+        {
+            // A quantity of the same name is something else.
+            return Some(format!("table_{name}"));
+        }
         let known = self.known.get(&id);
         if let Some(name) = known.filter(|name| !is_numbered(name)) {
             return Some(name.clone());

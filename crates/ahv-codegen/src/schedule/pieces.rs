@@ -7,7 +7,9 @@ use crate::ir::{self, Basis};
 
 /// A function of more lines is computed in pieces; what a piece takes besides its statements is above that.
 pub(super) const LONGEST: usize = 118;
-/// Pieces are joined up to this many lines.
+/// A function that is differentiated by so many things is computed in pieces even if it is short: it would not be for long.
+const MANY: usize = 6;
+/// A part of a stage takes a further section up to this many lines.
 const FULL: usize = 90;
 /// Characters of a line.
 const WIDTH: usize = 75;
@@ -22,15 +24,19 @@ pub(crate) struct Group {
     pub(crate) entries: Vec<usize>,
 }
 
-/// The groups of a function of so many lines, in the order in which their first entries stand; none where it is short enough.
-/// A group that is too long by itself is divided by rows.
+/// The groups of a function of so many lines, in the order in which their first entries stand; none where it is short
+/// and by few variables.
+///
+/// There is one for each component or group of parameters that entries are derivatives by, those with an index together. One that
+/// is too long is divided by the index, then by rows. Short neighbours are not joined: a term more would change which,
+/// and with it names that the term has nothing to do with.
 pub(super) fn groups(
     function: &ir::Function,
     document: &ir::Document,
     lines: usize,
     mut length: impl FnMut(&Group) -> usize,
 ) -> Vec<Group> {
-    if lines <= LONGEST || !function.compressed {
+    if !function.compressed {
         return Vec::new();
     }
     let outputs = function.outputs.iter();
@@ -48,20 +54,40 @@ pub(super) fn groups(
         }
     };
     let row = |position: &usize| entries[*position].1.at.first().cloned();
+    let families = divided((0..entries.len()).collect(), |it| stem(&by(it)));
+    if lines <= LONGEST && families.len() < MANY {
+        return Vec::new();
+    }
     let mut groups = Vec::new();
-    for group in divided((0..entries.len()).collect(), by) {
-        if length(&group) <= LONGEST {
-            groups.push(group);
+    for family in families {
+        if length(&family) <= LONGEST {
+            groups.push(family);
             continue;
         }
-        let rows = divided(group.entries, |it| row(it).unwrap_or_default());
-        groups.extend(rows.into_iter().map(|of_row| Group {
-            label: format!("{}_of_{}", group.label, of_row.label),
-            about: format!("{} in row {}", group.label, of_row.label),
-            ..of_row
-        }));
+        for group in divided(family.entries, by) {
+            if length(&group) <= LONGEST {
+                groups.push(group);
+                continue;
+            }
+            let rows = divided(group.entries, |it| row(it).unwrap_or_default());
+            groups.extend(rows.into_iter().map(|of_row| Group {
+                label: format!("{}_of_{}", group.label, of_row.label),
+                about: format!("{} in row {}", group.label, of_row.label),
+                ..of_row
+            }));
+        }
     }
     groups
+}
+
+/// A label without its index: what differs in that alone is computed together.
+fn stem(label: &str) -> String {
+    let stem = label.trim_end_matches(|c: char| c.is_ascii_digit());
+    if stem.len() < label.len() {
+        stem.trim_end_matches('_').to_owned()
+    } else {
+        label.to_owned()
+    }
 }
 
 /// Entries by their labels, in the order in which the first of each stand.
@@ -85,34 +111,6 @@ fn divided(entries: Vec<usize>, label: impl Fn(&usize) -> String) -> Vec<Group> 
 fn identifier(text: &str) -> String {
     let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     text.to_lowercase().chars().map(letter).collect()
-}
-
-/// Neighbours of the groups as one, as long as their bodies together are short enough.
-pub(super) fn joined(
-    groups: Vec<Group>,
-    mut body: impl FnMut(&Group) -> Body,
-) -> Vec<(Group, Body)> {
-    let mut found: Vec<(Group, Body, Vec<String>)> = Vec::new();
-    for group in groups {
-        let labels = vec![group.label.clone()];
-        let alone = body(&group);
-        if let Some((last, last_body, names)) = found.last_mut()
-            && length(last_body) + length(&alone) <= FULL
-        {
-            names.extend(labels);
-            last.entries.extend(group.entries);
-            last.about += &format!(", {}", group.about);
-            last.label = match names.as_slice() {
-                [first, .., last] if names.len() > 2 => format!("{first}_to_{last}"),
-                names => names.join("_"),
-            };
-            *last_body = body(last);
-        } else {
-            found.push((group, alone, labels));
-        }
-    }
-    let parts = found.into_iter();
-    parts.map(|(group, body, _)| (group, body)).collect()
 }
 
 /// About how many lines a body has.
@@ -148,31 +146,72 @@ fn characters(expr: &Expr) -> usize {
 
 /// Statements that fill a struct, in parts that are short enough. No part needs a name of another.
 pub(crate) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
-    let total: usize = statements.iter().map(lines).sum();
-    if total <= LONGEST {
-        return vec![body_of(statements)];
-    }
-    let full = total.div_ceil(total.div_ceil(FULL));
-    let (mut parts, mut part, mut length) = (Vec::new(), Vec::new(), 0);
+    let cuts = cuts(&statements);
+    let (mut parts, mut part, mut is_due) = (Vec::new(), Vec::new(), false);
     let mut heading = None;
-    let mut rest = statements.into_iter().peekable();
-    while let Some(statement) = rest.next() {
-        length += lines(&statement);
-        if let Statement::Section(_) = statement {
-            heading = Some(statement.clone());
-        }
-        part.push(statement);
-        if length >= full && rest.peek().is_some() && is_free(&part, rest.clone()) {
+    for (position, statement) in statements.iter().enumerate() {
+        is_due |= cuts.contains(&position);
+        if is_due && is_free(&part, &statements[position..]) {
             parts.push(body_of(std::mem::take(&mut part)));
-            length = 0;
+            is_due = false;
             // A part that begins in the middle of a section says which.
-            if !matches!(rest.peek(), Some(Statement::Section(_))) {
+            if !is_heading(statement) {
                 part.extend(heading.clone());
             }
         }
+        if is_heading(statement) {
+            heading = Some(statement.clone());
+        }
+        part.push(statement.clone());
     }
     parts.push(body_of(part));
     parts
+}
+
+/// Where statements that fill a struct are cut: between sections, where these are not too long by themselves.
+fn cuts(statements: &[Statement]) -> Vec<usize> {
+    let total: usize = statements.iter().map(lines).sum();
+    let (mut cuts, mut length, mut ahead) = (Vec::new(), 0, 0);
+    for (position, statement) in statements.iter().enumerate() {
+        if is_heading(statement) || position == 0 {
+            let section = statements[position + 1..].iter();
+            let section = section.take_while(|it| !is_heading(it));
+            ahead = lines(statement) + section.map(lines).sum::<usize>();
+        }
+        let is_full = if is_heading(statement) {
+            length + ahead > FULL
+        } else {
+            length >= FULL && length + ahead > LONGEST
+        };
+        if length > 0 && is_full && total > LONGEST {
+            cuts.push(position);
+            length = 0;
+        }
+        length += lines(statement);
+        ahead -= lines(statement);
+    }
+    cuts
+}
+
+/// The names that parts need of each other.
+pub(super) fn crossing(statements: &[Statement]) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for cut in cuts(statements) {
+        let (before, after) = statements.split_at(cut);
+        let bound = bound(before);
+        body_of(after.to_vec()).walk(&mut |expr| {
+            if let Expr::Name(name) = expr
+                && bound.contains(name)
+            {
+                found.insert(name.clone());
+            }
+        });
+    }
+    found
+}
+
+fn is_heading(statement: &Statement) -> bool {
+    matches!(statement, Statement::Section(_))
 }
 
 fn body_of(statements: Vec<Statement>) -> Body {
@@ -183,9 +222,22 @@ fn body_of(statements: Vec<Statement>) -> Body {
 }
 
 /// Whether nothing of the rest needs a name of a part.
-fn is_free(part: &[Statement], rest: impl Iterator<Item = Statement>) -> bool {
+fn is_free(part: &[Statement], rest: &[Statement]) -> bool {
+    let names = bound(part);
+    // A heading belongs to what follows it.
+    let mut free = !part.last().is_some_and(is_heading);
+    body_of(rest.to_vec()).walk(&mut |expr| {
+        if let Expr::Name(name) = expr {
+            free &= !names.contains(name);
+        }
+    });
+    free
+}
+
+/// The names that statements bind.
+fn bound(statements: &[Statement]) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
-    for statement in part {
+    for statement in statements {
         match statement {
             Statement::Let { name, .. } => {
                 names.insert(name.clone());
@@ -200,13 +252,5 @@ fn is_free(part: &[Statement], rest: impl Iterator<Item = Statement>) -> bool {
             Statement::Section(_) | Statement::Set { .. } => {}
         }
     }
-    // A heading belongs to what follows it.
-    let headed = matches!(part.last(), Some(Statement::Section(_)));
-    let mut free = !headed;
-    body_of(rest.collect()).walk(&mut |expr| {
-        if let Expr::Name(name) = expr {
-            free &= !names.contains(name);
-        }
-    });
-    free
+    names
 }

@@ -98,7 +98,12 @@ impl Prepared {
             home: None,
             known: &self.names,
         };
-        if let Some(name) = names.describe(id).filter(|name| !taken(name)) {
+        let own = match dag.node(id) {
+            Node::Leaf(_, name) => Some(name.clone()),
+            _ => None,
+        };
+        let mut free = [own, names.describe(id)].into_iter().flatten();
+        if let Some(name) = free.find(|name| !taken(name)) {
             return name;
         }
         let numbers = (1..).map(|k| format!("{}_constant_{k}", owner.to_lowercase()));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::given::{Given, Stage};
-use super::pieces::{Group, groups, joined, length};
+use super::pieces::{Group, groups, length};
 use super::stages;
 use super::tree::{Body, Source, StageKind};
 use super::{Cost, Prepared, body};
@@ -152,7 +152,11 @@ impl<'a> Program<'a> {
                 };
                 let groups = groups(function, document, lines, |it| length(&of_group(it)));
                 if groups.len() > 1 {
-                    written.pieces = joined(groups, of_group);
+                    let pieces = groups.into_iter().map(|group| {
+                        let body = of_group(&group).untitled();
+                        (group, body)
+                    });
+                    written.pieces = pieces.collect();
                     written.body = Body::default();
                 }
             }

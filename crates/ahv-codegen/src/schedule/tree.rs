@@ -132,6 +132,15 @@ impl Statement {
 }
 
 impl Body {
+    /// The same without its heading where it has one alone: the description of the function says as much.
+    pub(super) fn untitled(mut self) -> Self {
+        let is_heading = |it: &Statement| matches!(it, Statement::Section(_));
+        if self.statements.iter().filter(|it| is_heading(it)).count() == 1 {
+            self.statements.retain(|it| !is_heading(it));
+        }
+        self
+    }
+
     /// Calls `see` with every expression and its parts.
     pub(crate) fn walk<'a>(&'a self, see: &mut impl FnMut(&'a Expr)) {
         let values = self.statements.iter().filter_map(Statement::value);

@@ -72,6 +72,8 @@ const IR: &str = r#"{
         "entries": [{"at": ["speed"], "expr": "speed_rate"}, {"at": ["angle"], "expr": "angle_rate"}]}]},
       {"name": "jacobians", "group": "jacobians", "doc": "Derivatives", "equation": "(1)", "outputs": [{"name": "state", "basis": ["state", "state"], "unit": null,
         "entries": [{"at": ["speed", "angle"], "expr": ["*", "u.push", ["cos", "x.angle"]]}, {"at": ["angle", "angle"], "expr": ["neg", ["*", "d_c_l_d_angle", "inverse"]]}]}]},
+      {"name": "parameter_jacobian", "group": "parameter_jacobian", "doc": "Derivatives", "equation": "(1)", "outputs": [{"name": "parameter", "basis": ["state", "parameter"], "unit": null,
+        "entries": [{"at": ["angle", "m"], "expr": ["*", "c_l", "inverse"]}, {"at": ["angle", "c_l_angle"], "expr": ["*", "x.angle", "inverse"]}, {"at": ["angle", "c_l_0"], "expr": "p.m"}]}]},
       {"name": "diffusion", "group": "diffusion", "doc": "Diffusion", "equation": "(2)", "outputs": [{"name": "diffusion", "basis": ["state", "noise"], "unit": null,
         "entries": [{"at": ["speed", "w_1"], "expr": "x.speed"}, {"at": ["angle", "w_2"], "expr": 1}]}]},
       {"name": "H_V", "group": "strict_feedback", "doc": "Total derivative", "equation": "(2)", "outputs": [{"name": "", "basis": [], "unit": "1", "entries": [{"at": [], "expr": ["*", "x.speed", "d_c_l_d_angle"]}]}]},

@@ -13,9 +13,8 @@ pub fn drift_from<R: Real>(
     State {
         velocity: i.cos_beta * i.a_x_cos_alpha_plus_a_z_sin_alpha + i.a_y * i.sin_beta,
         alpha: i.inv_cos_beta
-            * (s.a_z_cos_alpha_minus_a_x_slope_of_axial_force_in_lift * i.inv_velocity
-                - (h.roll_rate_times_d_slope_of_axial_force_in_lift_d_alpha
-                    + h.yaw_rate_slope_of_axial_force_in_lift) * i.sin_beta)
+            * (s.a_z_cos_alpha_minus_a_x_sin_alpha * i.inv_velocity
+                - h.roll_rate_cos_alpha_plus_yaw_rate_sin_alpha * i.sin_beta)
             + x.pitch_rate,
         beta: x.roll_rate * i.sin_alpha - x.yaw_rate * i.cos_alpha
             + (i.a_y * i.cos_beta - i.a_x_cos_alpha_plus_a_z_sin_alpha * i.sin_beta)
@@ -37,12 +36,10 @@ pub fn drift_from<R: Real>(
             - R::HALF * x.q_2 * x.roll_rate - R::HALF * u.turn_rate * x.q_0
             + i.norm_return * x.q_3,
         north: x.velocity
-            * (i.cos_beta
-                * h.to_north_x_cos_alpha_plus_to_north_z_slope_of_axial_force_in_lift
+            * (i.cos_beta * h.to_north_x_cos_alpha_plus_to_north_z_sin_alpha
                 + i.to_north_y * i.sin_beta) + u.turn_rate * x.east,
         east: x.velocity
-            * (i.cos_beta
-                * h.to_east_x_cos_alpha_plus_to_east_z_slope_of_axial_force_in_lift
+            * (i.cos_beta * h.to_east_x_cos_alpha_plus_to_east_z_sin_alpha
                 + i.to_east_y * i.sin_beta) - u.turn_rate * x.north,
         altitude: i.climb_rate,
     }

@@ -45,17 +45,15 @@ ahv_core::entries! {
     }
 }
 
-/// Entries of [`jacobians_values`]: derivatives by velocity, alpha, beta, q_0.
+/// Entries of [`jacobians_values`]: derivatives by velocity.
 #[inline(always)]
-fn jacobians_by_velocity_to_q_0<R: Real>(
-    state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>, h: &Curvatures<R>,
+fn jacobians_by_velocity<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to velocity
     let d_side_force_d_velocity = i.c_y * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_y_d_velocity; // N*s/m
-    let d_normal_force_d_velocity = s.slope_of_axial_force_in_drag * s.d_lift_d_velocity
-        + s.slope_of_normal_force_in_drag * s.d_drag_d_velocity; // N*s/m
+    let d_normal_force_d_velocity = -(i.cos_alpha * s.d_lift_d_velocity
+        + i.sin_alpha * s.d_drag_d_velocity); // N*s/m
     let d_rolling_moment_d_velocity = p.b
         * (i.c_r * s.d_reference_force_d_velocity + i.reference_force * s.d_c_r_d_velocity); // N*s
     let d_yawing_moment_d_velocity = p.b
@@ -65,53 +63,16 @@ fn jacobians_by_velocity_to_q_0<R: Real>(
         * (i.c_m * s.d_reference_force_d_velocity + i.reference_force * s.d_c_m_d_velocity) - p.x_cg
         * d_normal_force_d_velocity; // N*s
     state.altitude.velocity = -(i.cos_beta
-        * h.downward_x_cos_alpha_plus_downward_z_slope_of_axial_force_in_lift
-        + i.downward_y * i.sin_beta);
-
-    // Derivatives with respect to alpha
-    let d_normal_force_d_alpha = s.slope_of_axial_force_in_drag * s.d_lift_d_alpha
-        - i.drag * i.cos_alpha
-        + i.lift * i.sin_alpha
-        + s.slope_of_normal_force_in_drag * s.d_drag_d_alpha; // N/rad
-    let d_pitching_moment_d_alpha = i.reference_force * p.c_bar * s.d_c_m_d_alpha
-        - p.x_cg * d_normal_force_d_alpha; // N*m/rad
-    state.altitude.alpha = -x.velocity * i.cos_beta
-        * (h.downward_z_times_d_slope_of_axial_force_in_lift_d_alpha
-            - h.downward_x_slope_of_axial_force_in_lift); // m/s/rad
-
-    // Derivatives with respect to beta
-    let d_side_force_d_beta = i.reference_force * s.d_c_y_d_beta; // N/rad
-    let d_normal_force_d_beta = s.slope_of_normal_force_in_drag * s.d_drag_d_beta; // N/rad
-    let d_rolling_moment_d_beta = i.reference_force * p.b * s.d_c_r_d_beta; // N*m/rad
-    let d_yawing_moment_d_beta = p.x_cg * d_side_force_d_beta
-        + i.reference_force * p.b * s.d_c_n_d_beta; // N*m/rad
-    let d_pitching_moment_d_beta = -p.x_cg * d_normal_force_d_beta; // N*m/rad
-    state.altitude.beta = -x.velocity
-        * (i.sin_beta
-            * (-s.downward_x_cos_alpha - s.downward_z_slope_of_axial_force_in_lift)
-            + i.downward_y * i.cos_beta); // m/s/rad
-
-    // Derivatives with respect to q_0
-    state.altitude.q_0 = s.slope_of_climb_rate_in_downward_x * s.d_downward_x_d_q_0
-        + s.slope_of_climb_rate_in_downward_y * s.d_downward_y_d_q_0
-        + s.slope_of_climb_rate_in_downward_z * s.d_downward_z_d_q_0; // m/s
-    let jacobians_term_1 = s.a_z_cos_alpha_minus_a_x_slope_of_axial_force_in_lift * i.inv_velocity * i.sin_beta;
-    let minus_a_x_cos_alpha_minus_a_z_slope_of_axial_force_in_lift_plus_d_a_y_d_beta = s.d_a_y_d_beta
-        - i.a_x * i.cos_alpha
-        - i.a_z * i.sin_alpha;
-
-    state.velocity.velocity = i.cos_beta
-        * (s.cos_alpha_times_d_a_x_d_velocity + s.slope_of_axial_force_in_lift_times_d_a_z_d_velocity) + i.sin_beta
-        * s.d_a_y_d_velocity;
+        * h.downward_x_cos_alpha_plus_downward_z_sin_alpha + i.downward_y * i.sin_beta);
+    state.velocity.velocity = i.cos_beta * (s.cos_alpha_times_d_a_x_d_velocity + s.sin_alpha_times_d_a_z_d_velocity)
+        + i.sin_beta * s.d_a_y_d_velocity;
     state.alpha.velocity = i.inv_cos_beta
         * (i.inv_velocity
-            * (h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_velocity
-                - h.slope_of_axial_force_in_lift_times_d_a_x_d_velocity)
-            - s.a_z_cos_alpha_minus_a_x_slope_of_axial_force_in_lift * s.inv_velocity_2);
+            * (h.cos_alpha_times_d_a_z_d_velocity - h.sin_alpha_times_d_a_x_d_velocity)
+            - s.a_z_cos_alpha_minus_a_x_sin_alpha * s.inv_velocity_2);
     state.beta.velocity = i.inv_velocity
         * (i.sin_beta
-            * (-s.cos_alpha_times_d_a_x_d_velocity
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_velocity)
+            * (-s.cos_alpha_times_d_a_x_d_velocity - s.sin_alpha_times_d_a_z_d_velocity)
             + i.cos_beta * s.d_a_y_d_velocity)
         - (i.a_y * i.cos_beta - i.a_x_cos_alpha_plus_a_z_sin_alpha * i.sin_beta)
             * s.inv_velocity_2;
@@ -120,182 +81,209 @@ fn jacobians_by_velocity_to_q_0<R: Real>(
     state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy;
     state.yaw_rate.velocity = p.inv_inertia
         * (p.i_xz * d_rolling_moment_d_velocity + p.i_xx * d_yawing_moment_d_velocity);
-    state.north.velocity = i.cos_beta * h.to_north_x_cos_alpha_plus_to_north_z_slope_of_axial_force_in_lift
-        + i.to_north_y * i.sin_beta;
-    state.east.velocity = i.cos_beta * h.to_east_x_cos_alpha_plus_to_east_z_slope_of_axial_force_in_lift
-        + i.to_east_y * i.sin_beta;
+    state.north.velocity = i.cos_beta * h.to_north_x_cos_alpha_plus_to_north_z_sin_alpha + i.to_north_y * i.sin_beta;
+    state.east.velocity = i.cos_beta * h.to_east_x_cos_alpha_plus_to_east_z_sin_alpha + i.to_east_y * i.sin_beta;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    h: &Curvatures<R>,
+) {
+    let d_normal_force_d_alpha = -(i.sin_alpha * (s.d_drag_d_alpha - i.lift)
+        + i.cos_alpha * (i.drag + s.d_lift_d_alpha)); // N/rad
+    let d_pitching_moment_d_alpha = i.reference_force * p.c_bar * s.d_c_m_d_alpha
+        - p.x_cg * d_normal_force_d_alpha; // N*m/rad
+    state.altitude.alpha = -x.velocity * i.cos_beta
+        * (h.downward_z_cos_alpha - h.downward_x_sin_alpha); // m/s/rad
     state.velocity.alpha = i.cos_beta
         * (i.sin_alpha * s.minus_a_x_plus_d_a_z_d_alpha + i.cos_alpha * s.a_z_plus_d_a_x_d_alpha);
     state.alpha.alpha = i.inv_cos_beta
         * (i.inv_velocity
             * (i.cos_alpha * s.minus_a_x_plus_d_a_z_d_alpha
-                - h.a_z_plus_d_a_x_d_alpha_times_slope_of_axial_force_in_lift)
+                - h.a_z_plus_d_a_x_d_alpha_times_sin_alpha)
             - i.sin_beta * (x.yaw_rate * i.cos_alpha - x.roll_rate * i.sin_alpha));
     state.beta.alpha = i.sin_alpha * (x.yaw_rate - i.sin_beta * i.inv_velocity * s.d_a_z_d_alpha)
         + i.cos_alpha * (x.roll_rate - i.sin_beta * i.inv_velocity * s.d_a_x_d_alpha)
-        - jacobians_term_1;
+        - s.a_z_cos_alpha_minus_a_x_sin_alpha_times_sin_beta_over_velocity;
     state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy;
-    state.north.alpha = x.velocity * i.cos_beta
-        * (h.to_north_z_times_d_slope_of_axial_force_in_lift_d_alpha - h.to_north_x_slope_of_axial_force_in_lift);
-    state.east.alpha = x.velocity * i.cos_beta
-        * (h.to_east_z_times_d_slope_of_axial_force_in_lift_d_alpha - h.to_east_x_slope_of_axial_force_in_lift);
-    state.velocity.beta = i.sin_beta * minus_a_x_cos_alpha_minus_a_z_slope_of_axial_force_in_lift_plus_d_a_y_d_beta
-        + i.cos_beta * (i.a_y + s.cos_alpha_times_d_a_x_d_beta + s.slope_of_axial_force_in_lift_times_d_a_z_d_beta);
+    state.north.alpha = x.velocity * i.cos_beta * (h.to_north_z_cos_alpha - h.to_north_x_sin_alpha);
+    state.east.alpha = x.velocity * i.cos_beta * (h.to_east_z_cos_alpha - h.to_east_x_sin_alpha);
+}
+
+/// Entries of [`jacobians_values`]: derivatives by beta.
+#[inline(always)]
+fn jacobians_by_beta<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+    h: &Curvatures<R>,
+) {
+    let d_side_force_d_beta = i.reference_force * s.d_c_y_d_beta; // N/rad
+    let d_normal_force_d_beta = -i.sin_alpha * s.d_drag_d_beta; // N/rad
+    let d_rolling_moment_d_beta = i.reference_force * p.b * s.d_c_r_d_beta; // N*m/rad
+    let d_yawing_moment_d_beta = p.x_cg * d_side_force_d_beta
+        + i.reference_force * p.b * s.d_c_n_d_beta; // N*m/rad
+    let d_pitching_moment_d_beta = -p.x_cg * d_normal_force_d_beta; // N*m/rad
+    state.altitude.beta = -x.velocity
+        * (i.sin_beta * (-s.downward_x_cos_alpha - s.downward_z_sin_alpha)
+            + i.downward_y * i.cos_beta); // m/s/rad
+    let minus_a_x_cos_alpha_minus_a_z_sin_alpha_plus_d_a_y_d_beta = s.d_a_y_d_beta
+        - i.a_x * i.cos_alpha
+        - i.a_z * i.sin_alpha;
+    state.velocity.beta = i.sin_beta * minus_a_x_cos_alpha_minus_a_z_sin_alpha_plus_d_a_y_d_beta
+        + i.cos_beta * (i.a_y + s.cos_alpha_times_d_a_x_d_beta + s.sin_alpha_times_d_a_z_d_beta);
     state.alpha.beta = i.cos_alpha
         * (i.inv_velocity * i.inv_cos_beta * s.d_a_z_d_beta - x.roll_rate)
         + i.sin_alpha * (-x.yaw_rate - i.inv_velocity * i.inv_cos_beta * s.d_a_x_d_beta)
         + s.inv_cos_beta_2
-            * (jacobians_term_1
-                - (h.roll_rate_times_d_slope_of_axial_force_in_lift_d_alpha
-                    + h.yaw_rate_slope_of_axial_force_in_lift) * s.sin_beta_2);
+            * (s.a_z_cos_alpha_minus_a_x_sin_alpha_times_sin_beta_over_velocity
+                - h.roll_rate_cos_alpha_plus_yaw_rate_sin_alpha * s.sin_beta_2);
     state.beta.beta = i.inv_velocity
         * (i.sin_beta
-            * (-i.a_y - s.cos_alpha_times_d_a_x_d_beta
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_beta)
-            + i.cos_beta
-                * minus_a_x_cos_alpha_minus_a_z_slope_of_axial_force_in_lift_plus_d_a_y_d_beta);
+            * (-i.a_y - s.cos_alpha_times_d_a_x_d_beta - s.sin_alpha_times_d_a_z_d_beta)
+            + i.cos_beta * minus_a_x_cos_alpha_minus_a_z_sin_alpha_plus_d_a_y_d_beta);
     state.roll_rate.beta = p.inv_inertia * (p.i_zz * d_rolling_moment_d_beta + p.i_xz * d_yawing_moment_d_beta);
     state.pitch_rate.beta = d_pitching_moment_d_beta * p.inv_i_yy;
     state.yaw_rate.beta = p.inv_inertia * (p.i_xz * d_rolling_moment_d_beta + p.i_xx * d_yawing_moment_d_beta);
     state.north.beta = x.velocity
-        * (i.sin_beta
-            * (-s.to_north_x_cos_alpha - s.to_north_z_slope_of_axial_force_in_lift)
-            + i.to_north_y * i.cos_beta);
+        * (i.sin_beta * (-s.to_north_x_cos_alpha - s.to_north_z_sin_alpha) + i.to_north_y * i.cos_beta);
     state.east.beta = x.velocity
-        * (i.sin_beta * (-s.to_east_x_cos_alpha - s.to_east_z_slope_of_axial_force_in_lift) + i.to_east_y * i.cos_beta);
-    state.velocity.q_0 = i.cos_beta * (s.cos_alpha_times_d_a_x_d_q_0 + s.slope_of_axial_force_in_lift_times_d_a_z_d_q_0)
-        + i.sin_beta * s.d_a_y_d_q_0;
-    state.alpha.q_0 = i.inv_velocity * i.inv_cos_beta * (i.cos_alpha * s.d_a_z_d_q_0 - i.sin_alpha * s.d_a_x_d_q_0);
-    state.beta.q_0 = i.inv_velocity
-        * (i.sin_beta
-            * (-s.cos_alpha_times_d_a_x_d_q_0
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_q_0)
-            + i.cos_beta * s.d_a_y_d_q_0);
-    state.q_0.q_0 = i.norm_return - i.q_0_2 * p.two_k_norm;
-    state.q_1.q_0 = R::HALF * x.roll_rate - s.q_0_two_k_norm_q_1;
-    state.q_2.q_0 = R::HALF * x.pitch_rate - s.q_0_two_k_norm_q_2;
-    state.q_3.q_0 = R::HALF * x.yaw_rate - R::HALF * u.turn_rate - s.q_0_two_k_norm_q_3;
-    state.north.q_0 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_0 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_0)
-        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_0;
-    state.east.q_0 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_0 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_0) + x.velocity
-        * i.sin_beta * s.d_to_east_y_d_q_0;
+        * (i.sin_beta * (-s.to_east_x_cos_alpha - s.to_east_z_sin_alpha) + i.to_east_y * i.cos_beta);
 }
 
-/// Entries of [`jacobians_values`]: derivatives by q_1, q_2, q_3, altitude, roll_rate.
+/// Entries of [`jacobians_values`]: derivatives by q.
 #[inline(always)]
-fn jacobians_by_q_1_to_roll_rate<R: Real>(
+fn jacobians_by_q<R: Real>(
     state: &mut StateJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
     s: &Slopes<R>, h: &Curvatures<R>,
 ) {
-    // Derivatives with respect to roll_rate
-    let d_rolling_moment_d_roll_rate = i.reference_force * p.b * s.d_c_r_d_roll_rate; // N*m*s/rad
-    let d_roll_torque_d_roll_rate = s.i_xz_pitch_rate + d_rolling_moment_d_roll_rate; // N*m*s/rad
-    let d_yawing_moment_d_roll_rate = i.reference_force * p.half_b_2_c_n_p_hat * i.inv_velocity; // N*m*s/rad
-    let d_yaw_torque_d_roll_rate = x.pitch_rate * p.d2_yaw_torque_d_roll_rate_d_pitch_rate
-        + d_yawing_moment_d_roll_rate; // N*m*s/rad
+    // Derivatives with respect to q_0
+    state.altitude.q_0 = -(i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_downward_x_d_q_0
+            + x.velocity * i.sin_alpha * s.d_downward_z_d_q_0)
+        + x.velocity * i.sin_beta * s.d_downward_y_d_q_0); // m/s
 
     // Derivatives with respect to q_1
-    state.altitude.q_1 = s.slope_of_climb_rate_in_downward_x * s.d_downward_x_d_q_1
-        + s.slope_of_climb_rate_in_downward_y * s.d_downward_y_d_q_1
-        + s.slope_of_climb_rate_in_downward_z * s.d_downward_z_d_q_1; // m/s
+    state.altitude.q_1 = -(i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_downward_x_d_q_1
+            + x.velocity * i.sin_alpha * s.d_downward_z_d_q_1)
+        + x.velocity * i.sin_beta * s.d_downward_y_d_q_1); // m/s
 
     // Derivatives with respect to q_2
-    state.altitude.q_2 = s.slope_of_climb_rate_in_downward_x * s.d_downward_x_d_q_2
-        + s.slope_of_climb_rate_in_downward_y * s.d_downward_y_d_q_2
-        + s.slope_of_climb_rate_in_downward_z * s.d_downward_z_d_q_2; // m/s
+    state.altitude.q_2 = -(i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_downward_x_d_q_2
+            + x.velocity * i.sin_alpha * s.d_downward_z_d_q_2)
+        + x.velocity * i.sin_beta * s.d_downward_y_d_q_2); // m/s
 
     // Derivatives with respect to q_3
-    state.altitude.q_3 = s.slope_of_climb_rate_in_downward_x * s.d_downward_x_d_q_3
-        + s.slope_of_climb_rate_in_downward_y * s.d_downward_y_d_q_3
-        + s.slope_of_climb_rate_in_downward_z * s.d_downward_z_d_q_3; // m/s
+    state.altitude.q_3 = -(i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_downward_x_d_q_3
+            + x.velocity * i.sin_alpha * s.d_downward_z_d_q_3)
+        + x.velocity * i.sin_beta * s.d_downward_y_d_q_3); // m/s
 
-    // Derivatives with respect to altitude
+    state.velocity.q_0 = i.cos_beta * (s.cos_alpha_times_d_a_x_d_q_0 + s.sin_alpha_times_d_a_z_d_q_0)
+        + i.sin_beta * s.d_a_y_d_q_0;
+    state.velocity.q_1 = i.cos_beta * h.cos_alpha_times_d_a_x_d_q_1_plus_sin_alpha_times_d_a_z_d_q_1
+        + i.sin_beta * s.d_a_y_d_q_1;
+    state.velocity.q_2 = i.cos_beta * h.cos_alpha_times_d_a_x_d_q_2_plus_sin_alpha_times_d_a_z_d_q_2
+        + i.sin_beta * s.d_a_y_d_q_2;
+    state.velocity.q_3 = i.cos_beta * h.cos_alpha_times_d_a_x_d_q_3_plus_sin_alpha_times_d_a_z_d_q_3
+        + i.sin_beta * s.d_a_y_d_q_3;
+    state.alpha.q_0 = i.inv_velocity * i.inv_cos_beta * (i.cos_alpha * s.d_a_z_d_q_0 - i.sin_alpha * s.d_a_x_d_q_0);
+    state.alpha.q_1 = i.inv_velocity * i.inv_cos_beta * h.cos_alpha_times_d_a_z_d_q_1_minus_sin_alpha_times_d_a_x_d_q_1;
+    state.alpha.q_2 = i.inv_velocity * i.inv_cos_beta * h.cos_alpha_times_d_a_z_d_q_2_minus_sin_alpha_times_d_a_x_d_q_2;
+    state.alpha.q_3 = i.inv_velocity * i.inv_cos_beta * h.cos_alpha_times_d_a_z_d_q_3_minus_sin_alpha_times_d_a_x_d_q_3;
+    state.beta.q_0 = i.inv_velocity
+        * (i.sin_beta * (-s.cos_alpha_times_d_a_x_d_q_0 - s.sin_alpha_times_d_a_z_d_q_0) + i.cos_beta * s.d_a_y_d_q_0);
+    state.beta.q_1 = i.inv_velocity
+        * (i.sin_beta * (-s.cos_alpha_times_d_a_x_d_q_1 - s.sin_alpha_times_d_a_z_d_q_1)
+            + h.cos_beta_times_d_a_y_d_q_1);
+    state.beta.q_2 = i.inv_velocity
+        * (i.sin_beta * (-s.cos_alpha_times_d_a_x_d_q_2 - s.sin_alpha_times_d_a_z_d_q_2)
+            + h.cos_beta_times_d_a_y_d_q_2);
+    state.beta.q_3 = i.inv_velocity
+        * (i.sin_beta * (-s.cos_alpha_times_d_a_x_d_q_3 - s.sin_alpha_times_d_a_z_d_q_3)
+            + h.cos_beta_times_d_a_y_d_q_3);
+    state.q_0.q_0 = i.norm_return - i.q_0_2 * p.two_k_norm;
+    state.q_0.q_1 = -(R::HALF * x.roll_rate + s.q_0_two_k_norm_q_1);
+    state.q_0.q_2 = -(R::HALF * x.pitch_rate + s.q_0_two_k_norm_q_2);
+    state.q_0.q_3 = R::HALF * u.turn_rate - R::HALF * x.yaw_rate - s.q_0_two_k_norm_q_3;
+    state.q_1.q_0 = R::HALF * x.roll_rate - s.q_0_two_k_norm_q_1;
+    state.q_1.q_1 = i.norm_return - i.q_1_2 * p.two_k_norm;
+    state.q_1.q_2 = R::HALF * x.yaw_rate + R::HALF * u.turn_rate - s.q_1_two_k_norm_q_2;
+    state.q_1.q_3 = -(R::HALF * x.pitch_rate + s.q_1_two_k_norm_q_3);
+    state.q_2.q_0 = R::HALF * x.pitch_rate - s.q_0_two_k_norm_q_2;
+    state.q_2.q_1 = -(R::HALF * x.yaw_rate + R::HALF * u.turn_rate + s.q_1_two_k_norm_q_2);
+    state.q_2.q_2 = i.norm_return - i.q_2_2 * p.two_k_norm;
+    state.q_2.q_3 = R::HALF * x.roll_rate - s.q_2_two_k_norm_q_3;
+    state.q_3.q_0 = R::HALF * x.yaw_rate - R::HALF * u.turn_rate - s.q_0_two_k_norm_q_3;
+    state.q_3.q_1 = R::HALF * x.pitch_rate - s.q_1_two_k_norm_q_3;
+    state.q_3.q_2 = -(R::HALF * x.roll_rate + s.q_2_two_k_norm_q_3);
+    state.q_3.q_3 = i.norm_return - i.q_3_2 * p.two_k_norm;
+    state.north.q_0 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_0 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_0)
+        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_0;
+    state.north.q_1 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_1 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_1)
+        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_1;
+    state.north.q_2 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_2 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_2)
+        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_2;
+    state.north.q_3 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_3 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_3)
+        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_3;
+    state.east.q_0 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_0 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_0) + x.velocity
+        * i.sin_beta * s.d_to_east_y_d_q_0;
+    state.east.q_1 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_1 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_1) + x.velocity
+        * i.sin_beta * s.d_to_east_y_d_q_1;
+    state.east.q_2 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_2 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_2) + x.velocity
+        * i.sin_beta * s.d_to_east_y_d_q_2;
+    state.east.q_3 = i.cos_beta
+        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_3 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_3) + x.velocity
+        * i.sin_beta * s.d_to_east_y_d_q_3;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     let d_side_force_d_altitude = i.c_y * s.d_reference_force_d_altitude; // N/m
-    let d_normal_force_d_altitude = s.slope_of_axial_force_in_drag * s.d_lift_d_altitude
-        + s.slope_of_normal_force_in_drag * s.d_drag_d_altitude; // N/m
+    let d_normal_force_d_altitude = -(i.cos_alpha * s.d_lift_d_altitude
+        + i.sin_alpha * s.d_drag_d_altitude); // N/m
     let d_rolling_moment_d_altitude = i.c_r * p.b * s.d_reference_force_d_altitude; // N
     let d_yawing_moment_d_altitude = i.c_n * p.b * s.d_reference_force_d_altitude
         + p.x_cg * d_side_force_d_altitude; // N
     let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude
         - p.x_cg * d_normal_force_d_altitude; // N
-
-    state.velocity.q_1 = i.cos_beta * h.cos_alpha_times_d_a_x_d_q_1_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_1
-        + i.sin_beta * s.d_a_y_d_q_1;
-    state.alpha.q_1 = i.inv_velocity * i.inv_cos_beta
-        * (h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_1
-            - h.slope_of_axial_force_in_lift_times_d_a_x_d_q_1);
-    state.beta.q_1 = i.inv_velocity
-        * (i.sin_beta
-            * (-s.cos_alpha_times_d_a_x_d_q_1
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_q_1)
-            + h.cos_beta_times_d_a_y_d_q_1);
-    state.q_0.q_1 = -(R::HALF * x.roll_rate + s.q_0_two_k_norm_q_1);
-    state.q_1.q_1 = i.norm_return - i.q_1_2 * p.two_k_norm;
-    state.q_2.q_1 = -(R::HALF * x.yaw_rate + R::HALF * u.turn_rate + s.q_1_two_k_norm_q_2);
-    state.q_3.q_1 = R::HALF * x.pitch_rate - s.q_1_two_k_norm_q_3;
-    state.north.q_1 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_1 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_1)
-        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_1;
-    state.east.q_1 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_1 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_1) + x.velocity
-        * i.sin_beta * s.d_to_east_y_d_q_1;
-    state.velocity.q_2 = i.cos_beta * h.cos_alpha_times_d_a_x_d_q_2_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_2
-        + i.sin_beta * s.d_a_y_d_q_2;
-    state.alpha.q_2 = i.inv_velocity * i.inv_cos_beta
-        * (h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_2
-            - h.slope_of_axial_force_in_lift_times_d_a_x_d_q_2);
-    state.beta.q_2 = i.inv_velocity
-        * (i.sin_beta
-            * (-s.cos_alpha_times_d_a_x_d_q_2
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_q_2)
-            + h.cos_beta_times_d_a_y_d_q_2);
-    state.q_0.q_2 = -(R::HALF * x.pitch_rate + s.q_0_two_k_norm_q_2);
-    state.q_1.q_2 = R::HALF * x.yaw_rate + R::HALF * u.turn_rate - s.q_1_two_k_norm_q_2;
-    state.q_2.q_2 = i.norm_return - i.q_2_2 * p.two_k_norm;
-    state.q_3.q_2 = -(R::HALF * x.roll_rate + s.q_2_two_k_norm_q_3);
-    state.north.q_2 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_2 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_2)
-        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_2;
-    state.east.q_2 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_2 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_2) + x.velocity
-        * i.sin_beta * s.d_to_east_y_d_q_2;
-    state.velocity.q_3 = i.cos_beta * h.cos_alpha_times_d_a_x_d_q_3_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_3
-        + i.sin_beta * s.d_a_y_d_q_3;
-    state.alpha.q_3 = i.inv_velocity * i.inv_cos_beta
-        * (h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_3
-            - h.slope_of_axial_force_in_lift_times_d_a_x_d_q_3);
-    state.beta.q_3 = i.inv_velocity
-        * (i.sin_beta
-            * (-s.cos_alpha_times_d_a_x_d_q_3
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_q_3)
-            + h.cos_beta_times_d_a_y_d_q_3);
-    state.q_0.q_3 = R::HALF * u.turn_rate - R::HALF * x.yaw_rate - s.q_0_two_k_norm_q_3;
-    state.q_1.q_3 = -(R::HALF * x.pitch_rate + s.q_1_two_k_norm_q_3);
-    state.q_2.q_3 = R::HALF * x.roll_rate - s.q_2_two_k_norm_q_3;
-    state.q_3.q_3 = i.norm_return - i.q_3_2 * p.two_k_norm;
-    state.north.q_3 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_north_x_d_q_3 + x.velocity * i.sin_alpha * s.d_to_north_z_d_q_3)
-        + x.velocity * i.sin_beta * s.d_to_north_y_d_q_3;
-    state.east.q_3 = i.cos_beta
-        * (x.velocity * i.cos_alpha * s.d_to_east_x_d_q_3 + x.velocity * i.sin_alpha * s.d_to_east_z_d_q_3) + x.velocity
-        * i.sin_beta * s.d_to_east_y_d_q_3;
-    state.velocity.altitude = i.cos_beta
-        * (s.cos_alpha_times_d_a_x_d_altitude + s.slope_of_axial_force_in_lift_times_d_a_z_d_altitude) + i.sin_beta
-        * s.d_a_y_d_altitude;
+    state.velocity.altitude = i.cos_beta * (s.cos_alpha_times_d_a_x_d_altitude + s.sin_alpha_times_d_a_z_d_altitude)
+        + i.sin_beta * s.d_a_y_d_altitude;
     state.alpha.altitude = i.inv_velocity * i.inv_cos_beta
         * (i.cos_alpha * s.d_a_z_d_altitude - i.sin_alpha * s.d_a_x_d_altitude);
     state.beta.altitude = i.inv_velocity
         * (i.sin_beta
-            * (-s.cos_alpha_times_d_a_x_d_altitude
-                - s.slope_of_axial_force_in_lift_times_d_a_z_d_altitude)
+            * (-s.cos_alpha_times_d_a_x_d_altitude - s.sin_alpha_times_d_a_z_d_altitude)
             + i.cos_beta * s.d_a_y_d_altitude);
     state.roll_rate.altitude = p.inv_inertia
         * (p.i_zz * d_rolling_moment_d_altitude + p.i_xz * d_yawing_moment_d_altitude);
     state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy;
     state.yaw_rate.altitude = p.inv_inertia
         * (p.i_xz * d_rolling_moment_d_altitude + p.i_xx * d_yawing_moment_d_altitude);
+}
+
+/// Entries of [`jacobians_values`]: derivatives by roll_rate.
+#[inline(always)]
+fn jacobians_by_roll_rate<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_rolling_moment_d_roll_rate = i.reference_force * p.b * s.d_c_r_d_roll_rate; // N*m*s/rad
+    let d_roll_torque_d_roll_rate = s.i_xz_pitch_rate + d_rolling_moment_d_roll_rate; // N*m*s/rad
+    let d_yawing_moment_d_roll_rate = i.reference_force * p.half_b_2_c_n_p_hat * i.inv_velocity; // N*m*s/rad
+    let d_yaw_torque_d_roll_rate = x.pitch_rate * p.d2_yaw_torque_d_roll_rate_d_pitch_rate
+        + d_yawing_moment_d_roll_rate; // N*m*s/rad
     state.alpha.roll_rate = -i.cos_alpha * i.sin_beta * i.inv_cos_beta;
     state.beta.roll_rate = i.sin_alpha;
     state.roll_rate.roll_rate = p.inv_inertia
@@ -308,47 +296,16 @@ fn jacobians_by_q_1_to_roll_rate<R: Real>(
     state.q_3.roll_rate = s.minus_half_q_2;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by pitch_rate, yaw_rate, east, north, throttle, delta_e.
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
 #[inline(always)]
-fn jacobians_by_pitch_rate_to_delta_e<R: Real>(
-    state: &mut StateJacobianEntries<R>, input: &mut InputJacobianEntries<R>, x: &State<R>, u: &Input<R>,
-    p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+fn jacobians_by_pitch_rate<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
-    // Derivatives with respect to pitch_rate
     let d_roll_torque_d_pitch_rate = x.yaw_rate * p.d2_roll_torque_d_pitch_rate_d_yaw_rate
         + p.i_xz * x.roll_rate; // N*m*s/rad
     let d_yaw_torque_d_pitch_rate = p.d2_yaw_torque_d_roll_rate_d_pitch_rate * x.roll_rate
         - x.yaw_rate * p.i_xz; // N*m*s/rad
     let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar * s.d_c_m_d_pitch_rate; // N*m*s/rad
-
-    // Derivatives with respect to yaw_rate
-    let d_rolling_moment_d_yaw_rate = i.reference_force * p.half_b_2_c_r_r_hat * i.inv_velocity; // N*m*s/rad
-    let d_roll_torque_d_yaw_rate = p.d2_roll_torque_d_pitch_rate_d_yaw_rate * x.pitch_rate
-        + d_rolling_moment_d_yaw_rate; // N*m*s/rad
-    let d_yawing_moment_d_yaw_rate = i.reference_force * p.b * s.d_c_n_d_yaw_rate; // N*m*s/rad
-    let d_yaw_torque_d_yaw_rate = d_yawing_moment_d_yaw_rate - s.i_xz_pitch_rate; // N*m*s/rad
-
-    // Derivatives with respect to throttle
-    let d_c_t_d_throttle = p.c_t_throttle + i.mach * p.c_t_throttle_mach + i.mach_2 * p.c_t_throttle_mach_2;
-    let d_thrust_d_throttle = i.reference_force * d_c_t_d_throttle; // N
-    let d_a_x_d_throttle = d_thrust_d_throttle * p.inv_m; // m/s^2
-
-    // Derivatives with respect to delta_e
-    let d_c_l_d_delta_e = p.c_l_delta_e + p.c_l_mach_delta_e * i.mach; // 1/rad
-    let d_lift_d_delta_e = i.reference_force * d_c_l_d_delta_e; // N/rad
-    let d_c_d_d_delta_e = p.c_d_alpha_delta_e * x.alpha + p.two_c_d_delta_e_2 * u.delta_e; // 1/rad
-    let d_drag_d_delta_e = i.reference_force * d_c_d_d_delta_e; // N/rad
-    let d_axial_force_d_delta_e = i.sin_alpha * d_lift_d_delta_e
-        + s.slope_of_axial_force_in_drag * d_drag_d_delta_e; // N/rad
-    let d_a_x_d_delta_e = d_axial_force_d_delta_e * p.inv_m; // m/s^2/rad
-    let d_normal_force_d_delta_e = s.slope_of_axial_force_in_drag * d_lift_d_delta_e
-        + s.slope_of_normal_force_in_drag * d_drag_d_delta_e; // N/rad
-    let d_a_z_d_delta_e = d_normal_force_d_delta_e * p.inv_m; // m/s^2/rad
-    let d_c_m_d_delta_e = p.c_m_delta_e + p.c_m_mach_delta_e * i.mach; // 1/rad
-    let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar * d_c_m_d_delta_e
-        - p.x_cg * d_normal_force_d_delta_e; // N*m/rad
-    let jacobians_term_1 = i.cos_alpha * d_a_x_d_delta_e + i.sin_alpha * d_a_z_d_delta_e;
-
     state.alpha.pitch_rate = R::ONE;
     state.roll_rate.pitch_rate = p.inv_inertia
         * (p.i_zz * d_roll_torque_d_pitch_rate + p.i_xz * d_yaw_torque_d_pitch_rate);
@@ -359,8 +316,20 @@ fn jacobians_by_pitch_rate_to_delta_e<R: Real>(
     state.q_1.pitch_rate = s.minus_half_q_3;
     state.q_2.pitch_rate = s.half_q_0;
     state.q_3.pitch_rate = R::HALF * x.q_1;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by yaw_rate.
+#[inline(always)]
+fn jacobians_by_yaw_rate<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_rolling_moment_d_yaw_rate = i.reference_force * p.half_b_2_c_r_r_hat * i.inv_velocity; // N*m*s/rad
+    let d_roll_torque_d_yaw_rate = p.d2_roll_torque_d_pitch_rate_d_yaw_rate * x.pitch_rate
+        + d_rolling_moment_d_yaw_rate; // N*m*s/rad
+    let d_yawing_moment_d_yaw_rate = i.reference_force * p.b * s.d_c_n_d_yaw_rate; // N*m*s/rad
+    let d_yaw_torque_d_yaw_rate = d_yawing_moment_d_yaw_rate - s.i_xz_pitch_rate; // N*m*s/rad
     state.alpha.yaw_rate = -i.sin_alpha * i.sin_beta * i.inv_cos_beta;
-    state.beta.yaw_rate = s.slope_of_axial_force_in_drag;
+    state.beta.yaw_rate = -i.cos_alpha;
     state.roll_rate.yaw_rate = p.inv_inertia * (p.i_zz * d_roll_torque_d_yaw_rate + p.i_xz * d_yaw_torque_d_yaw_rate);
     state.pitch_rate.yaw_rate = (p.i_zz_minus_i_xx * x.roll_rate + p.two_i_xz * x.yaw_rate) * p.inv_i_yy;
     state.yaw_rate.yaw_rate = p.inv_inertia * (p.i_xz * d_roll_torque_d_yaw_rate + p.i_xx * d_yaw_torque_d_yaw_rate);
@@ -368,83 +337,126 @@ fn jacobians_by_pitch_rate_to_delta_e<R: Real>(
     state.q_1.yaw_rate = s.half_q_2;
     state.q_2.yaw_rate = s.minus_half_q_1;
     state.q_3.yaw_rate = s.half_q_0;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by east.
+#[inline(always)]
+fn jacobians_by_east<R: Real>(state: &mut StateJacobianEntries<R>, u: &Input<R>) {
     state.north.east = u.turn_rate;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by north.
+#[inline(always)]
+fn jacobians_by_north<R: Real>(state: &mut StateJacobianEntries<R>, u: &Input<R>) {
     state.east.north = -u.turn_rate;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by throttle.
+#[inline(always)]
+fn jacobians_by_throttle<R: Real>(input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>) {
+    let d_c_t_d_throttle = p.c_t_throttle + i.mach * p.c_t_throttle_mach + i.mach_2 * p.c_t_throttle_mach_2;
+    let d_thrust_d_throttle = i.reference_force * d_c_t_d_throttle; // N
+    let d_a_x_d_throttle = d_thrust_d_throttle * p.inv_m; // m/s^2
     input.velocity.throttle = i.cos_alpha * i.cos_beta * d_a_x_d_throttle;
     input.alpha.throttle = -i.sin_alpha * i.inv_velocity * i.inv_cos_beta * d_a_x_d_throttle;
     input.beta.throttle = -i.cos_alpha * i.sin_beta * i.inv_velocity * d_a_x_d_throttle;
-    input.velocity.delta_e = i.cos_beta * jacobians_term_1;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(
+    input: &mut InputJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
+    let d_c_l_d_delta_e = p.c_l_delta_e + p.c_l_mach_delta_e * i.mach; // 1/rad
+    let d_lift_d_delta_e = i.reference_force * d_c_l_d_delta_e; // N/rad
+    let d_c_d_d_delta_e = p.c_d_alpha_delta_e * x.alpha + p.two_c_d_delta_e_2 * u.delta_e; // 1/rad
+    let d_drag_d_delta_e = i.reference_force * d_c_d_d_delta_e; // N/rad
+    let d_axial_force_d_delta_e = i.sin_alpha * d_lift_d_delta_e - i.cos_alpha * d_drag_d_delta_e; // N/rad
+    let d_a_x_d_delta_e = d_axial_force_d_delta_e * p.inv_m; // m/s^2/rad
+    let d_normal_force_d_delta_e = -(i.cos_alpha * d_lift_d_delta_e
+        + i.sin_alpha * d_drag_d_delta_e); // N/rad
+    let d_a_z_d_delta_e = d_normal_force_d_delta_e * p.inv_m; // m/s^2/rad
+    let d_c_m_d_delta_e = p.c_m_delta_e + p.c_m_mach_delta_e * i.mach; // 1/rad
+    let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar * d_c_m_d_delta_e
+        - p.x_cg * d_normal_force_d_delta_e; // N*m/rad
+    let cos_alpha_times_d_a_x_d_delta_e_plus_sin_alpha_times_d_a_z_d_delta_e = i.cos_alpha * d_a_x_d_delta_e
+        + i.sin_alpha * d_a_z_d_delta_e;
+    input.velocity.delta_e = i.cos_beta * cos_alpha_times_d_a_x_d_delta_e_plus_sin_alpha_times_d_a_z_d_delta_e;
     input.alpha.delta_e = i.inv_velocity * i.inv_cos_beta
         * (i.cos_alpha * d_a_z_d_delta_e - i.sin_alpha * d_a_x_d_delta_e);
-    input.beta.delta_e = -i.sin_beta * i.inv_velocity * jacobians_term_1;
+    input.beta.delta_e = -i.sin_beta * i.inv_velocity
+        * cos_alpha_times_d_a_x_d_delta_e_plus_sin_alpha_times_d_a_z_d_delta_e;
     input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy;
 }
 
-/// Entries of [`jacobians_values`]: derivatives by delta_a, delta_r, turn_rate.
+/// Entries of [`jacobians_values`]: derivatives by delta_a.
 #[inline(always)]
-fn jacobians_by_delta_a_to_turn_rate<R: Real>(
-    input: &mut InputJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
-    s: &Slopes<R>,
+fn jacobians_by_delta_a<R: Real>(
+    input: &mut InputJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
 ) {
-    // Derivatives with respect to delta_a
     let d_drag_d_delta_a = i.reference_force * p.two_c_d_delta_a_2 * u.delta_a; // N/rad
-    let d_axial_force_d_delta_a = s.slope_of_axial_force_in_drag * d_drag_d_delta_a; // N/rad
+    let d_axial_force_d_delta_a = -i.cos_alpha * d_drag_d_delta_a; // N/rad
     let d_a_x_d_delta_a = d_axial_force_d_delta_a * p.inv_m; // m/s^2/rad
     let d_a_y_d_delta_a = i.reference_force * p.c_y_delta_a_over_m; // m/s^2/rad
-    let d_normal_force_d_delta_a = s.slope_of_normal_force_in_drag * d_drag_d_delta_a; // N/rad
+    let d_normal_force_d_delta_a = -i.sin_alpha * d_drag_d_delta_a; // N/rad
     let d_a_z_d_delta_a = d_normal_force_d_delta_a * p.inv_m; // m/s^2/rad
     let d_c_r_d_delta_a = p.c_r_delta_a + p.c_r_mach_delta_a * i.mach; // 1/rad
     let d_rolling_moment_d_delta_a = i.reference_force * p.b * d_c_r_d_delta_a; // N*m/rad
     let d_yawing_moment_d_delta_a = i.reference_force * p.x_cg_c_y_delta_a_plus_b_c_n_delta_a; // N*m/rad
     let d_pitching_moment_d_delta_a = -p.x_cg * d_normal_force_d_delta_a; // N*m/rad
+    let cos_alpha_times_d_a_x_d_delta_a = i.cos_alpha * d_a_x_d_delta_a;
+    let sin_alpha_times_d_a_z_d_delta_a = i.sin_alpha * d_a_z_d_delta_a;
+    input.velocity.delta_a = i.cos_beta * (cos_alpha_times_d_a_x_d_delta_a + sin_alpha_times_d_a_z_d_delta_a)
+        + i.sin_beta * d_a_y_d_delta_a;
+    input.alpha.delta_a = i.inv_velocity * i.inv_cos_beta
+        * (i.cos_alpha * d_a_z_d_delta_a - i.sin_alpha * d_a_x_d_delta_a);
+    input.beta.delta_a = i.inv_velocity
+        * (i.sin_beta
+            * (-cos_alpha_times_d_a_x_d_delta_a - sin_alpha_times_d_a_z_d_delta_a)
+            + i.cos_beta * d_a_y_d_delta_a);
+    input.roll_rate.delta_a = p.inv_inertia
+        * (p.i_zz * d_rolling_moment_d_delta_a + p.i_xz * d_yawing_moment_d_delta_a);
+    input.pitch_rate.delta_a = d_pitching_moment_d_delta_a * p.inv_i_yy;
+    input.yaw_rate.delta_a = p.inv_inertia * (p.i_xz * d_rolling_moment_d_delta_a + p.i_xx * d_yawing_moment_d_delta_a);
+}
 
-    // Derivatives with respect to delta_r
+/// Entries of [`jacobians_values`]: derivatives by delta_r.
+#[inline(always)]
+fn jacobians_by_delta_r<R: Real>(
+    input: &mut InputJacobianEntries<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     let d_drag_d_delta_r = i.reference_force * p.two_c_d_delta_r_2 * u.delta_r; // N/rad
-    let d_axial_force_d_delta_r = s.slope_of_axial_force_in_drag * d_drag_d_delta_r; // N/rad
+    let d_axial_force_d_delta_r = -i.cos_alpha * d_drag_d_delta_r; // N/rad
     let d_a_x_d_delta_r = d_axial_force_d_delta_r * p.inv_m; // m/s^2/rad
     let d_c_y_d_delta_r = p.c_y_delta_r + p.c_y_mach_delta_r * i.mach; // 1/rad
     let d_side_force_d_delta_r = i.reference_force * d_c_y_d_delta_r; // N/rad
     let d_a_y_d_delta_r = d_side_force_d_delta_r * p.inv_m; // m/s^2/rad
-    let d_normal_force_d_delta_r = s.slope_of_normal_force_in_drag * d_drag_d_delta_r; // N/rad
+    let d_normal_force_d_delta_r = -i.sin_alpha * d_drag_d_delta_r; // N/rad
     let d_a_z_d_delta_r = d_normal_force_d_delta_r * p.inv_m; // m/s^2/rad
     let d_rolling_moment_d_delta_r = i.reference_force * p.b_c_r_delta_r; // N*m/rad
     let d_c_n_d_delta_r = p.c_n_delta_r + p.c_n_mach_delta_r * i.mach; // 1/rad
     let d_yawing_moment_d_delta_r = p.x_cg * d_side_force_d_delta_r
         + i.reference_force * p.b * d_c_n_d_delta_r; // N*m/rad
     let d_pitching_moment_d_delta_r = -p.x_cg * d_normal_force_d_delta_r; // N*m/rad
-    let cos_alpha_times_d_a_x_d_delta_a = i.cos_alpha * d_a_x_d_delta_a;
-    let slope_of_axial_force_in_lift_times_d_a_z_d_delta_a = i.sin_alpha * d_a_z_d_delta_a;
     let cos_alpha_times_d_a_x_d_delta_r = i.cos_alpha * d_a_x_d_delta_r;
-    let slope_of_axial_force_in_lift_times_d_a_z_d_delta_r = i.sin_alpha * d_a_z_d_delta_r;
-
-    input.velocity.delta_a = i.cos_beta
-        * (cos_alpha_times_d_a_x_d_delta_a + slope_of_axial_force_in_lift_times_d_a_z_d_delta_a) + i.sin_beta
-        * d_a_y_d_delta_a;
-    input.alpha.delta_a = i.inv_velocity * i.inv_cos_beta
-        * (i.cos_alpha * d_a_z_d_delta_a - i.sin_alpha * d_a_x_d_delta_a);
-    input.beta.delta_a = i.inv_velocity
-        * (i.sin_beta
-            * (-cos_alpha_times_d_a_x_d_delta_a
-                - slope_of_axial_force_in_lift_times_d_a_z_d_delta_a)
-            + i.cos_beta * d_a_y_d_delta_a);
-    input.roll_rate.delta_a = p.inv_inertia
-        * (p.i_zz * d_rolling_moment_d_delta_a + p.i_xz * d_yawing_moment_d_delta_a);
-    input.pitch_rate.delta_a = d_pitching_moment_d_delta_a * p.inv_i_yy;
-    input.yaw_rate.delta_a = p.inv_inertia * (p.i_xz * d_rolling_moment_d_delta_a + p.i_xx * d_yawing_moment_d_delta_a);
-    input.velocity.delta_r = i.cos_beta
-        * (cos_alpha_times_d_a_x_d_delta_r + slope_of_axial_force_in_lift_times_d_a_z_d_delta_r) + i.sin_beta
-        * d_a_y_d_delta_r;
+    let sin_alpha_times_d_a_z_d_delta_r = i.sin_alpha * d_a_z_d_delta_r;
+    input.velocity.delta_r = i.cos_beta * (cos_alpha_times_d_a_x_d_delta_r + sin_alpha_times_d_a_z_d_delta_r)
+        + i.sin_beta * d_a_y_d_delta_r;
     input.alpha.delta_r = i.inv_velocity * i.inv_cos_beta
         * (i.cos_alpha * d_a_z_d_delta_r - i.sin_alpha * d_a_x_d_delta_r);
     input.beta.delta_r = i.inv_velocity
         * (i.sin_beta
-            * (-cos_alpha_times_d_a_x_d_delta_r
-                - slope_of_axial_force_in_lift_times_d_a_z_d_delta_r)
+            * (-cos_alpha_times_d_a_x_d_delta_r - sin_alpha_times_d_a_z_d_delta_r)
             + i.cos_beta * d_a_y_d_delta_r);
     input.roll_rate.delta_r = p.inv_inertia
         * (p.i_zz * d_rolling_moment_d_delta_r + p.i_xz * d_yawing_moment_d_delta_r);
     input.pitch_rate.delta_r = d_pitching_moment_d_delta_r * p.inv_i_yy;
     input.yaw_rate.delta_r = p.inv_inertia * (p.i_xz * d_rolling_moment_d_delta_r + p.i_xx * d_yawing_moment_d_delta_r);
+}
+
+/// Entries of [`jacobians_values`]: derivatives by turn_rate.
+#[inline(always)]
+fn jacobians_by_turn_rate<R: Real>(input: &mut InputJacobianEntries<R>, x: &State<R>, s: &Slopes<R>) {
     input.q_0.turn_rate = s.half_q_3;
     input.q_1.turn_rate = s.half_q_2;
     input.q_2.turn_rate = s.minus_half_q_1;
@@ -460,10 +472,21 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-    jacobians_by_velocity_to_q_0(&mut state, x, u, p, i, s, h);
-    jacobians_by_q_1_to_roll_rate(&mut state, x, u, p, i, s, h);
-    jacobians_by_pitch_rate_to_delta_e(&mut state, &mut input, x, u, p, i, s);
-    jacobians_by_delta_a_to_turn_rate(&mut input, x, u, p, i, s);
+    jacobians_by_velocity(&mut state, p, i, s, h);
+    jacobians_by_alpha(&mut state, x, p, i, s, h);
+    jacobians_by_beta(&mut state, x, p, i, s, h);
+    jacobians_by_q(&mut state, x, u, p, i, s, h);
+    jacobians_by_altitude(&mut state, p, i, s);
+    jacobians_by_roll_rate(&mut state, x, p, i, s);
+    jacobians_by_pitch_rate(&mut state, x, p, i, s);
+    jacobians_by_yaw_rate(&mut state, x, p, i, s);
+    jacobians_by_east(&mut state, u);
+    jacobians_by_north(&mut state, u);
+    jacobians_by_throttle(&mut input, p, i);
+    jacobians_by_delta_e(&mut input, x, u, p, i);
+    jacobians_by_delta_a(&mut input, u, p, i);
+    jacobians_by_delta_r(&mut input, u, p, i);
+    jacobians_by_turn_rate(&mut input, x, s);
     (state, input)
 }
 
@@ -471,7 +494,7 @@ pub fn jacobians_values_from<R: Real>(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 1115 operations: 319 additions, 790 multiplications, 3 divisions, 2 sin_cos, 1 exp.
+/// 1125 operations: 318 additions, 801 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -494,7 +517,7 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 1224 operations: 353 additions, 865 multiplications, 3 divisions, 2 sin_cos, 1 exp.
+/// 1234 operations: 352 additions, 876 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

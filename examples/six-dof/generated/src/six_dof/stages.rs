@@ -95,7 +95,7 @@ ahv_core::record! {
         c_m_alpha_mach_alpha_plus_c_m_mach_delta_e_delta_e_plus_c_m_mach_q_hat_q_hat,
         c_n_beta_mach_beta_plus_c_n_mach_delta_r_delta_r_plus_c_n_mach_r_hat_r_hat, q_0_2, q_1_2, q_2_2, q_3_2,
         inv_norm_squared, one_minus_norm_squared, sin_beta, cos_beta, a_x_cos_alpha_plus_a_z_sin_alpha, inv_cos_beta,
-        roll_rate_2, yaw_rate_2, q_1_q_2, q_0_q_3, q_1_q_3, q_0_q_2, q_2_q_3, q_0_q_1,
+        roll_rate_2, yaw_rate_2,
     }
 }
 
@@ -167,12 +167,6 @@ fn intermediates_part_1<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
     i.c_m_alpha_mach_alpha_plus_c_m_mach_delta_e_delta_e_plus_c_m_mach_q_hat_q_hat = p.c_m_alpha_mach * x.alpha
         + p.c_m_mach_delta_e * u.delta_e
         + p.c_m_mach_q_hat * i.q_hat;
-}
-
-/// Fills a part of [`Intermediates`].
-#[inline(always)]
-fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>) {
-    // Moments, (3)
     i.c_m = p.c_m_0
         + i.mach * i.c_m_alpha_mach_alpha_plus_c_m_mach_delta_e_delta_e_plus_c_m_mach_q_hat_q_hat
         + p.c_m_alpha * x.alpha
@@ -190,7 +184,11 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
         + p.c_n_p_hat * i.p_hat
         + p.c_n_r_hat * i.r_hat;
     i.yawing_moment = i.reference_force * p.b * i.c_n + p.x_cg * i.side_force; // N*m
+}
 
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, p: &Prepared<R>) {
     // Attitude, (4)
     i.q_0_2 = x.q_0 * x.q_0;
     i.q_1_2 = x.q_1 * x.q_1;
@@ -199,19 +197,19 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
     i.norm_squared = i.q_0_2 + i.q_1_2 + i.q_2_2 + i.q_3_2;
     i.inv_norm_squared = i.norm_squared.recip();
     i.to_north_x = (i.q_0_2 + i.q_1_2 - i.q_2_2 - i.q_3_2) * i.inv_norm_squared;
-    i.q_1_q_2 = x.q_1 * x.q_2;
-    i.q_0_q_3 = x.q_0 * x.q_3;
-    i.to_north_y = R::TWO * (i.q_1_q_2 - i.q_0_q_3) * i.inv_norm_squared;
-    i.q_1_q_3 = x.q_1 * x.q_3;
-    i.q_0_q_2 = x.q_0 * x.q_2;
-    i.to_north_z = R::TWO * (i.q_1_q_3 + i.q_0_q_2) * i.inv_norm_squared;
-    i.to_east_x = R::TWO * (i.q_1_q_2 + i.q_0_q_3) * i.inv_norm_squared;
+    let q_1_q_2 = x.q_1 * x.q_2;
+    let q_0_q_3 = x.q_0 * x.q_3;
+    i.to_north_y = R::TWO * (q_1_q_2 - q_0_q_3) * i.inv_norm_squared;
+    let q_1_q_3 = x.q_1 * x.q_3;
+    let q_0_q_2 = x.q_0 * x.q_2;
+    i.to_north_z = R::TWO * (q_1_q_3 + q_0_q_2) * i.inv_norm_squared;
+    i.to_east_x = R::TWO * (q_1_q_2 + q_0_q_3) * i.inv_norm_squared;
     i.to_east_y = (i.q_0_2 - i.q_1_2 + i.q_2_2 - i.q_3_2) * i.inv_norm_squared;
-    i.q_2_q_3 = x.q_2 * x.q_3;
-    i.q_0_q_1 = x.q_0 * x.q_1;
-    i.to_east_z = R::TWO * (i.q_2_q_3 - i.q_0_q_1) * i.inv_norm_squared;
-    i.downward_x = R::TWO * (i.q_1_q_3 - i.q_0_q_2) * i.inv_norm_squared;
-    i.downward_y = R::TWO * (i.q_2_q_3 + i.q_0_q_1) * i.inv_norm_squared;
+    let q_2_q_3 = x.q_2 * x.q_3;
+    let q_0_q_1 = x.q_0 * x.q_1;
+    i.to_east_z = R::TWO * (q_2_q_3 - q_0_q_1) * i.inv_norm_squared;
+    i.downward_x = R::TWO * (q_1_q_3 - q_0_q_2) * i.inv_norm_squared;
+    i.downward_y = R::TWO * (q_2_q_3 + q_0_q_1) * i.inv_norm_squared;
     i.downward_z = (i.q_0_2 - i.q_1_2 - i.q_2_2 + i.q_3_2) * i.inv_norm_squared;
     i.one_minus_norm_squared = R::ONE - i.norm_squared;
     i.norm_return = p.k_norm * i.one_minus_norm_squared; // 1/s
@@ -245,7 +243,7 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
 pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
     intermediates_part_1(&mut i, x, u, p);
-    intermediates_part_2(&mut i, x, u, p);
+    intermediates_part_2(&mut i, x, p);
     i
 }
 
@@ -253,10 +251,6 @@ ahv_core::record! {
     /// Quantities of the Jacobians that other functions need. A field without a description is what its name
     /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Partial derivative of force along the axis of the body with respect to drag, dimensionless.
-        slope_of_axial_force_in_drag,
-        /// Partial derivative of force along the third axis of the body with respect to drag, dimensionless.
-        slope_of_normal_force_in_drag,
         /// Partial derivative of rolling-moment coefficient with respect to roll rate times span over twice the
         /// airspeed, 1/rad.
         slope_of_c_r_in_p_hat,
@@ -293,39 +287,32 @@ ahv_core::record! {
         /// Partial derivative of direction to_east, component z with respect to norm of the quaternion, squared,
         /// dimensionless.
         slope_of_to_east_z_in_norm_squared,
-        /// Partial derivative of climb rate with respect to direction downward, component x, m/s.
-        slope_of_climb_rate_in_downward_x,
-        /// Partial derivative of climb rate with respect to direction downward, component y, m/s.
-        slope_of_climb_rate_in_downward_y,
-        /// Partial derivative of climb rate with respect to direction downward, component z, m/s.
-        slope_of_climb_rate_in_downward_z,
         d_reference_force_d_velocity, d_c_l_d_velocity, d_lift_d_velocity, d_c_d_d_velocity, d_drag_d_velocity,
         d_c_t_d_velocity, d_a_x_d_velocity, d_c_y_d_velocity, d_a_y_d_velocity, d_a_z_d_velocity, d_c_r_d_velocity,
-        d_c_n_d_velocity, d_c_m_d_velocity, downward_x_cos_alpha, downward_z_slope_of_axial_force_in_lift,
-        d_c_l_d_alpha, d_lift_d_alpha, d_c_d_d_alpha, d_drag_d_alpha, d_a_x_d_alpha, d_a_z_d_alpha, d_c_m_d_alpha,
-        d_drag_d_beta, d_a_x_d_beta, d_c_y_d_beta, d_a_y_d_beta, d_a_z_d_beta, d_c_r_d_beta, d_c_n_d_beta,
-        d_c_r_d_roll_rate, i_xz_pitch_rate, d_c_m_d_pitch_rate, d_c_n_d_yaw_rate, d_downward_x_d_q_0, d_a_x_d_q_0,
-        d_downward_y_d_q_0, d_a_y_d_q_0, d_downward_z_d_q_0, d_a_z_d_q_0, d_to_north_x_d_q_0, d_to_north_y_d_q_0,
-        d_to_north_z_d_q_0, d_to_east_x_d_q_0, d_to_east_y_d_q_0, d_to_east_z_d_q_0, d_downward_x_d_q_1, d_a_x_d_q_1,
-        d_downward_y_d_q_1, d_a_y_d_q_1, d_downward_z_d_q_1, d_a_z_d_q_1, d_to_north_x_d_q_1, d_to_north_y_d_q_1,
-        d_to_north_z_d_q_1, d_to_east_x_d_q_1, d_to_east_y_d_q_1, d_to_east_z_d_q_1, d_downward_x_d_q_2, d_a_x_d_q_2,
-        d_downward_y_d_q_2, d_a_y_d_q_2, d_downward_z_d_q_2, d_a_z_d_q_2, d_to_north_x_d_q_2, d_to_north_y_d_q_2,
-        d_to_north_z_d_q_2, d_to_east_x_d_q_2, d_to_east_y_d_q_2, d_to_east_z_d_q_2, d_downward_x_d_q_3, d_a_x_d_q_3,
-        d_downward_y_d_q_3, d_a_y_d_q_3, d_downward_z_d_q_3, d_a_z_d_q_3, d_to_north_x_d_q_3, d_to_north_y_d_q_3,
-        d_to_north_z_d_q_3, d_to_east_x_d_q_3, d_to_east_y_d_q_3, d_to_east_z_d_q_3, d_density_d_altitude,
-        d_reference_force_d_altitude, d_lift_d_altitude, d_drag_d_altitude, d_a_x_d_altitude, d_a_y_d_altitude,
-        d_a_z_d_altitude, cos_alpha_times_d_a_x_d_velocity, slope_of_axial_force_in_lift_times_d_a_z_d_velocity,
-        minus_a_x_plus_d_a_z_d_alpha, a_z_plus_d_a_x_d_alpha, cos_alpha_times_d_a_x_d_beta,
-        slope_of_axial_force_in_lift_times_d_a_z_d_beta, cos_alpha_times_d_a_x_d_q_0,
-        slope_of_axial_force_in_lift_times_d_a_z_d_q_0, cos_alpha_times_d_a_x_d_q_1,
-        slope_of_axial_force_in_lift_times_d_a_z_d_q_1, cos_alpha_times_d_a_x_d_q_2,
-        slope_of_axial_force_in_lift_times_d_a_z_d_q_2, cos_alpha_times_d_a_x_d_q_3,
-        slope_of_axial_force_in_lift_times_d_a_z_d_q_3, cos_alpha_times_d_a_x_d_altitude,
-        slope_of_axial_force_in_lift_times_d_a_z_d_altitude, a_z_cos_alpha_minus_a_x_slope_of_axial_force_in_lift,
-        inv_velocity_2, inv_cos_beta_2, sin_beta_2, minus_half_q_1, minus_half_q_2, minus_half_q_3, q_0_two_k_norm_q_1,
-        q_0_two_k_norm_q_2, q_0_two_k_norm_q_3, half_q_0, half_q_2, q_1_two_k_norm_q_2, q_1_two_k_norm_q_3, half_q_3,
-        q_2_two_k_norm_q_3, to_north_x_cos_alpha, to_north_z_slope_of_axial_force_in_lift, to_east_x_cos_alpha,
-        to_east_z_slope_of_axial_force_in_lift,
+        d_c_n_d_velocity, d_c_m_d_velocity, downward_x_cos_alpha, downward_z_sin_alpha, d_c_l_d_alpha, d_lift_d_alpha,
+        d_c_d_d_alpha, d_drag_d_alpha, d_a_x_d_alpha, d_a_z_d_alpha, d_c_m_d_alpha, d_drag_d_beta, d_axial_force_d_beta,
+        d_a_x_d_beta, d_c_y_d_beta, d_a_y_d_beta, d_a_z_d_beta, d_c_r_d_beta, d_c_n_d_beta, d_c_r_d_roll_rate,
+        i_xz_pitch_rate, d_c_m_d_pitch_rate, d_c_n_d_yaw_rate, d_downward_x_d_q_0, d_a_x_d_q_0, d_downward_y_d_q_0,
+        d_a_y_d_q_0, d_downward_z_d_q_0, d_a_z_d_q_0, d_to_north_x_d_q_0, d_to_north_y_d_q_0, d_to_north_z_d_q_0,
+        d_to_east_x_d_q_0, d_to_east_y_d_q_0, d_to_east_z_d_q_0, d_downward_x_d_q_1, d_a_x_d_q_1, d_downward_y_d_q_1,
+        d_a_y_d_q_1, d_downward_z_d_q_1, d_a_z_d_q_1, d_to_north_x_d_q_1, d_to_north_y_d_q_1, d_to_north_z_d_q_1,
+        d_to_east_x_d_q_1, d_to_east_y_d_q_1, d_to_east_z_d_q_1, d_downward_x_d_q_2, d_a_x_d_q_2, d_downward_y_d_q_2,
+        d_a_y_d_q_2, d_downward_z_d_q_2, d_a_z_d_q_2, d_to_north_x_d_q_2, d_to_north_y_d_q_2, d_to_north_z_d_q_2,
+        d_to_east_x_d_q_2, d_to_east_y_d_q_2, d_to_east_z_d_q_2, d_downward_x_d_q_3, d_a_x_d_q_3, d_downward_y_d_q_3,
+        d_a_y_d_q_3, d_downward_z_d_q_3, d_a_z_d_q_3, d_to_north_x_d_q_3, d_to_north_y_d_q_3, d_to_north_z_d_q_3,
+        d_to_east_x_d_q_3, d_to_east_y_d_q_3, d_to_east_z_d_q_3, d_density_d_altitude, d_reference_force_d_altitude,
+        d_lift_d_altitude, d_drag_d_altitude, d_a_x_d_altitude, d_a_y_d_altitude, d_a_z_d_altitude,
+        cos_alpha_times_d_a_x_d_velocity, sin_alpha_times_d_a_z_d_velocity, minus_a_x_plus_d_a_z_d_alpha,
+        a_z_plus_d_a_x_d_alpha, cos_alpha_times_d_a_x_d_beta, sin_alpha_times_d_a_z_d_beta, cos_alpha_times_d_a_x_d_q_0,
+        sin_alpha_times_d_a_z_d_q_0, cos_alpha_times_d_a_x_d_q_1, sin_alpha_times_d_a_z_d_q_1,
+        cos_alpha_times_d_a_x_d_q_2, sin_alpha_times_d_a_z_d_q_2, cos_alpha_times_d_a_x_d_q_3,
+        sin_alpha_times_d_a_z_d_q_3, cos_alpha_times_d_a_x_d_altitude, sin_alpha_times_d_a_z_d_altitude,
+        a_z_cos_alpha_minus_a_x_sin_alpha, inv_velocity_2, inv_cos_beta_2,
+        a_z_cos_alpha_minus_a_x_sin_alpha_times_sin_beta_over_velocity, sin_beta_2, minus_half_q_1, minus_half_q_2,
+        minus_half_q_3, q_0_two_k_norm_q_1, q_0_two_k_norm_q_2, q_0_two_k_norm_q_3, half_q_0, half_q_2,
+        q_1_two_k_norm_q_2, q_1_two_k_norm_q_3, half_q_3, q_2_two_k_norm_q_3, to_north_x_cos_alpha,
+        to_north_z_sin_alpha, to_east_x_cos_alpha, to_east_z_sin_alpha, q_2_over_norm_squared, q_1_over_norm_squared,
+        q_0_over_norm_squared, q_3_over_norm_squared,
     }
 }
 
@@ -345,22 +332,20 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     s.d_c_d_d_velocity = slope_of_c_d_in_mach * p.inv_a; // s/m
     s.d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_d_d_velocity; // N*s/m
-    s.slope_of_axial_force_in_drag = -i.cos_alpha;
     let slope_of_c_t_in_mach = p.c_t_throttle_mach * u.throttle + p.two_c_t_throttle_mach_2 * u.throttle * i.mach;
     s.d_c_t_d_velocity = slope_of_c_t_in_mach * p.inv_a; // s/m
     let d_thrust_d_velocity = i.c_t * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_t_d_velocity; // N*s/m
     let d_axial_force_d_velocity = i.sin_alpha * s.d_lift_d_velocity
-        + s.slope_of_axial_force_in_drag * s.d_drag_d_velocity
+        - i.cos_alpha * s.d_drag_d_velocity
         + d_thrust_d_velocity; // N*s/m
     s.d_a_x_d_velocity = d_axial_force_d_velocity * p.inv_m; // 1/s
     s.d_c_y_d_velocity = i.c_y_beta_mach_beta_plus_c_y_mach_delta_r_delta_r * p.inv_a; // s/m
     let d_side_force_d_velocity = i.c_y * s.d_reference_force_d_velocity
         + i.reference_force * s.d_c_y_d_velocity; // N*s/m
     s.d_a_y_d_velocity = d_side_force_d_velocity * p.inv_m; // 1/s
-    s.slope_of_normal_force_in_drag = -i.sin_alpha;
-    let d_normal_force_d_velocity = s.slope_of_axial_force_in_drag * s.d_lift_d_velocity
-        + s.slope_of_normal_force_in_drag * s.d_drag_d_velocity; // N*s/m
+    let d_normal_force_d_velocity = -(i.cos_alpha * s.d_lift_d_velocity
+        + i.sin_alpha * s.d_drag_d_velocity); // N*s/m
     s.d_a_z_d_velocity = d_normal_force_d_velocity * p.inv_m; // 1/s
     s.slope_of_c_r_in_p_hat = p.c_r_p_hat + p.c_r_mach_p_hat * i.mach; // 1/rad
     s.d_c_r_d_velocity = i.inv_velocity
@@ -386,25 +371,23 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
         + i.mach * p.two_c_d_alpha_2_mach * x.alpha
         + u.delta_e * p.c_d_alpha_delta_e; // 1/rad
     s.d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // N/rad
-    let d_axial_force_d_alpha = i.sin_alpha * (i.drag + s.d_lift_d_alpha)
-        + i.lift * i.cos_alpha
-        + s.slope_of_axial_force_in_drag * s.d_drag_d_alpha; // N/rad
+    let drag_plus_d_lift_d_alpha = i.drag + s.d_lift_d_alpha;
+    let d_axial_force_d_alpha = i.cos_alpha * (i.lift - s.d_drag_d_alpha)
+        + i.sin_alpha * drag_plus_d_lift_d_alpha; // N/rad
     s.d_a_x_d_alpha = d_axial_force_d_alpha * p.inv_m; // m/s^2/rad
-    let d_normal_force_d_alpha = s.slope_of_axial_force_in_drag * s.d_lift_d_alpha
-        - i.drag * i.cos_alpha
-        + i.lift * i.sin_alpha
-        + s.slope_of_normal_force_in_drag * s.d_drag_d_alpha; // N/rad
+    let d_normal_force_d_alpha = -(i.sin_alpha * (s.d_drag_d_alpha - i.lift)
+        + i.cos_alpha * drag_plus_d_lift_d_alpha); // N/rad
     s.d_a_z_d_alpha = d_normal_force_d_alpha * p.inv_m; // m/s^2/rad
     s.d_c_m_d_alpha = p.c_m_alpha + i.mach * p.c_m_alpha_mach + p.two_c_m_alpha_2 * x.alpha; // 1/rad
 
     // Derivatives with respect to beta
     s.d_drag_d_beta = i.reference_force * p.two_c_d_beta_2 * x.beta; // N/rad
-    let d_axial_force_d_beta = s.slope_of_axial_force_in_drag * s.d_drag_d_beta; // N/rad
-    s.d_a_x_d_beta = d_axial_force_d_beta * p.inv_m; // m/s^2/rad
+    s.d_axial_force_d_beta = -i.cos_alpha * s.d_drag_d_beta; // N/rad
+    s.d_a_x_d_beta = s.d_axial_force_d_beta * p.inv_m; // m/s^2/rad
     s.d_c_y_d_beta = p.c_y_beta + i.mach * p.c_y_beta_mach; // 1/rad
     let d_side_force_d_beta = i.reference_force * s.d_c_y_d_beta; // N/rad
     s.d_a_y_d_beta = d_side_force_d_beta * p.inv_m; // m/s^2/rad
-    let d_normal_force_d_beta = s.slope_of_normal_force_in_drag * s.d_drag_d_beta; // N/rad
+    let d_normal_force_d_beta = -i.sin_alpha * s.d_drag_d_beta; // N/rad
     s.d_a_z_d_beta = d_normal_force_d_beta * p.inv_m; // m/s^2/rad
     s.d_c_r_d_beta = p.c_r_beta + i.mach * p.c_r_beta_mach; // 1/rad
     s.d_c_n_d_beta = p.c_n_beta + i.mach * p.c_n_beta_mach; // 1/rad
@@ -414,90 +397,87 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
 
     // Derivatives with respect to pitch_rate
     s.d_c_m_d_pitch_rate = s.slope_of_c_m_in_q_hat * p.half_c_bar * i.inv_velocity; // s/rad
+
+    // Derivatives with respect to yaw_rate
+    s.d_c_n_d_yaw_rate = s.slope_of_c_n_in_r_hat * p.half_b * i.inv_velocity; // s/rad
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>) {
-    // Derivatives with respect to yaw_rate
-    s.d_c_n_d_yaw_rate = s.slope_of_c_n_in_r_hat * p.half_b * i.inv_velocity; // s/rad
-
     // Derivatives with respect to q_0
     s.slope_of_downward_x_in_norm_squared = -i.downward_x * i.inv_norm_squared;
-    let q_2_over_norm_squared = x.q_2 * i.inv_norm_squared;
-    s.d_downward_x_d_q_0 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_0 - R::TWO * q_2_over_norm_squared;
+    s.q_2_over_norm_squared = x.q_2 * i.inv_norm_squared;
+    s.d_downward_x_d_q_0 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_0 - R::TWO * s.q_2_over_norm_squared;
     s.d_a_x_d_q_0 = p.g * s.d_downward_x_d_q_0; // m/s^2
     s.slope_of_downward_y_in_norm_squared = -i.downward_y * i.inv_norm_squared;
-    let q_1_over_norm_squared = x.q_1 * i.inv_norm_squared;
-    s.d_downward_y_d_q_0 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_0;
+    s.q_1_over_norm_squared = x.q_1 * i.inv_norm_squared;
+    s.d_downward_y_d_q_0 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_0;
     s.d_a_y_d_q_0 = p.g * s.d_downward_y_d_q_0; // m/s^2
     s.slope_of_downward_z_in_norm_squared = -i.downward_z * i.inv_norm_squared;
-    let q_0_over_norm_squared = x.q_0 * i.inv_norm_squared;
-    s.d_downward_z_d_q_0 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_0;
+    s.q_0_over_norm_squared = x.q_0 * i.inv_norm_squared;
+    s.d_downward_z_d_q_0 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_0;
     s.d_a_z_d_q_0 = p.g * s.d_downward_z_d_q_0; // m/s^2
     s.slope_of_to_north_x_in_norm_squared = -i.to_north_x * i.inv_norm_squared;
-    s.d_to_north_x_d_q_0 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_0;
+    s.d_to_north_x_d_q_0 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_0;
     s.slope_of_to_north_y_in_norm_squared = -i.to_north_y * i.inv_norm_squared;
-    let q_3_over_norm_squared = x.q_3 * i.inv_norm_squared;
-    s.d_to_north_y_d_q_0 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_0 - R::TWO * q_3_over_norm_squared;
+    s.q_3_over_norm_squared = x.q_3 * i.inv_norm_squared;
+    s.d_to_north_y_d_q_0 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_0 - R::TWO * s.q_3_over_norm_squared;
     s.slope_of_to_north_z_in_norm_squared = -i.to_north_z * i.inv_norm_squared;
-    s.d_to_north_z_d_q_0 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_0;
+    s.d_to_north_z_d_q_0 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_0;
     s.slope_of_to_east_x_in_norm_squared = -i.to_east_x * i.inv_norm_squared;
-    s.d_to_east_x_d_q_0 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_0;
+    s.d_to_east_x_d_q_0 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_0;
     s.slope_of_to_east_y_in_norm_squared = -i.to_east_y * i.inv_norm_squared;
-    s.d_to_east_y_d_q_0 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_0;
+    s.d_to_east_y_d_q_0 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_0;
     s.slope_of_to_east_z_in_norm_squared = -i.to_east_z * i.inv_norm_squared;
-    s.d_to_east_z_d_q_0 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_0 - R::TWO * q_1_over_norm_squared;
-    s.slope_of_climb_rate_in_downward_x = -x.velocity * i.cos_alpha * i.cos_beta; // m/s
-    s.slope_of_climb_rate_in_downward_y = -x.velocity * i.sin_beta; // m/s
-    s.slope_of_climb_rate_in_downward_z = -x.velocity * i.sin_alpha * i.cos_beta; // m/s
+    s.d_to_east_z_d_q_0 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_0 - R::TWO * s.q_1_over_norm_squared;
 
     // Derivatives with respect to q_1
-    s.d_downward_x_d_q_1 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_1;
+    s.d_downward_x_d_q_1 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_1;
     s.d_a_x_d_q_1 = p.g * s.d_downward_x_d_q_1; // m/s^2
-    s.d_downward_y_d_q_1 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_1;
+    s.d_downward_y_d_q_1 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_1;
     s.d_a_y_d_q_1 = p.g * s.d_downward_y_d_q_1; // m/s^2
-    s.d_downward_z_d_q_1 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_1 - R::TWO * q_1_over_norm_squared;
+    s.d_downward_z_d_q_1 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_1 - R::TWO * s.q_1_over_norm_squared;
     s.d_a_z_d_q_1 = p.g * s.d_downward_z_d_q_1; // m/s^2
-    s.d_to_north_x_d_q_1 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_1;
-    s.d_to_north_y_d_q_1 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_1;
-    s.d_to_north_z_d_q_1 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_1;
-    s.d_to_east_x_d_q_1 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_1;
-    s.d_to_east_y_d_q_1 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_1 - R::TWO * q_1_over_norm_squared;
-    s.d_to_east_z_d_q_1 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_1 - R::TWO * q_0_over_norm_squared;
+    s.d_to_north_x_d_q_1 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_1;
+    s.d_to_north_y_d_q_1 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_1;
+    s.d_to_north_z_d_q_1 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_1;
+    s.d_to_east_x_d_q_1 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_1;
+    s.d_to_east_y_d_q_1 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_1 - R::TWO * s.q_1_over_norm_squared;
+    s.d_to_east_z_d_q_1 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_1 - R::TWO * s.q_0_over_norm_squared;
 
     // Derivatives with respect to q_2
-    s.d_downward_x_d_q_2 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_2 - R::TWO * q_0_over_norm_squared;
+    s.d_downward_x_d_q_2 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_2 - R::TWO * s.q_0_over_norm_squared;
     s.d_a_x_d_q_2 = p.g * s.d_downward_x_d_q_2; // m/s^2
-    s.d_downward_y_d_q_2 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_2;
+    s.d_downward_y_d_q_2 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_2;
     s.d_a_y_d_q_2 = p.g * s.d_downward_y_d_q_2; // m/s^2
-    s.d_downward_z_d_q_2 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_2 - R::TWO * q_2_over_norm_squared;
+    s.d_downward_z_d_q_2 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_2 - R::TWO * s.q_2_over_norm_squared;
     s.d_a_z_d_q_2 = p.g * s.d_downward_z_d_q_2; // m/s^2
-    s.d_to_north_x_d_q_2 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_2 - R::TWO * q_2_over_norm_squared;
-    s.d_to_north_y_d_q_2 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_2;
-    s.d_to_north_z_d_q_2 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_2;
-    s.d_to_east_x_d_q_2 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_2;
-    s.d_to_east_y_d_q_2 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_2;
-    s.d_to_east_z_d_q_2 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_2;
-
-    // Derivatives with respect to q_3
-    s.d_downward_x_d_q_3 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_3;
-    s.d_a_x_d_q_3 = p.g * s.d_downward_x_d_q_3; // m/s^2
-    s.d_downward_y_d_q_3 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_3;
-    s.d_a_y_d_q_3 = p.g * s.d_downward_y_d_q_3; // m/s^2
-    s.d_downward_z_d_q_3 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_3;
-    s.d_a_z_d_q_3 = p.g * s.d_downward_z_d_q_3; // m/s^2
-    s.d_to_north_x_d_q_3 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_3 - R::TWO * q_3_over_norm_squared;
-    s.d_to_north_y_d_q_3 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_3 - R::TWO * q_0_over_norm_squared;
-    s.d_to_north_z_d_q_3 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_3;
-    s.d_to_east_x_d_q_3 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_3;
-    s.d_to_east_y_d_q_3 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_3 - R::TWO * q_3_over_norm_squared;
-    s.d_to_east_z_d_q_3 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_3;
+    s.d_to_north_x_d_q_2 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_2 - R::TWO * s.q_2_over_norm_squared;
+    s.d_to_north_y_d_q_2 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_2;
+    s.d_to_north_z_d_q_2 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_2;
+    s.d_to_east_x_d_q_2 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_2;
+    s.d_to_east_y_d_q_2 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_2;
+    s.d_to_east_z_d_q_2 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_2;
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_3<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>) {
+    // Derivatives with respect to q_3
+    s.d_downward_x_d_q_3 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_3;
+    s.d_a_x_d_q_3 = p.g * s.d_downward_x_d_q_3; // m/s^2
+    s.d_downward_y_d_q_3 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_3;
+    s.d_a_y_d_q_3 = p.g * s.d_downward_y_d_q_3; // m/s^2
+    s.d_downward_z_d_q_3 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_3;
+    s.d_a_z_d_q_3 = p.g * s.d_downward_z_d_q_3; // m/s^2
+    s.d_to_north_x_d_q_3 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_3 - R::TWO * s.q_3_over_norm_squared;
+    s.d_to_north_y_d_q_3 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_3 - R::TWO * s.q_0_over_norm_squared;
+    s.d_to_north_z_d_q_3 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_3;
+    s.d_to_east_x_d_q_3 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_3;
+    s.d_to_east_y_d_q_3 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_3 - R::TWO * s.q_3_over_norm_squared;
+    s.d_to_east_z_d_q_3 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_3;
+
     // Derivatives with respect to altitude
     s.d_density_d_altitude = -i.density * p.inv_h_s; // kg/m^4
     let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // N/m^3
@@ -506,38 +486,40 @@ fn slopes_part_3<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &
     s.d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // N/m
     let d_thrust_d_altitude = i.c_t * s.d_reference_force_d_altitude; // N/m
     let d_axial_force_d_altitude = i.sin_alpha * s.d_lift_d_altitude
-        + s.slope_of_axial_force_in_drag * s.d_drag_d_altitude
+        - i.cos_alpha * s.d_drag_d_altitude
         + d_thrust_d_altitude; // N/m
     s.d_a_x_d_altitude = d_axial_force_d_altitude * p.inv_m; // 1/s^2
     let d_side_force_d_altitude = i.c_y * s.d_reference_force_d_altitude; // N/m
     s.d_a_y_d_altitude = d_side_force_d_altitude * p.inv_m; // 1/s^2
-    let d_normal_force_d_altitude = s.slope_of_axial_force_in_drag * s.d_lift_d_altitude
-        + s.slope_of_normal_force_in_drag * s.d_drag_d_altitude; // N/m
+    let d_normal_force_d_altitude = -(i.cos_alpha * s.d_lift_d_altitude
+        + i.sin_alpha * s.d_drag_d_altitude); // N/m
     s.d_a_z_d_altitude = d_normal_force_d_altitude * p.inv_m; // 1/s^2
 
     // Further values
     s.downward_x_cos_alpha = i.downward_x * i.cos_alpha;
-    s.downward_z_slope_of_axial_force_in_lift = i.downward_z * i.sin_alpha;
+    s.downward_z_sin_alpha = i.downward_z * i.sin_alpha;
     s.i_xz_pitch_rate = p.i_xz * x.pitch_rate;
     s.cos_alpha_times_d_a_x_d_velocity = i.cos_alpha * s.d_a_x_d_velocity;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_velocity = i.sin_alpha * s.d_a_z_d_velocity;
+    s.sin_alpha_times_d_a_z_d_velocity = i.sin_alpha * s.d_a_z_d_velocity;
     s.minus_a_x_plus_d_a_z_d_alpha = s.d_a_z_d_alpha - i.a_x;
     s.a_z_plus_d_a_x_d_alpha = i.a_z + s.d_a_x_d_alpha;
     s.cos_alpha_times_d_a_x_d_beta = i.cos_alpha * s.d_a_x_d_beta;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_beta = i.sin_alpha * s.d_a_z_d_beta;
+    s.sin_alpha_times_d_a_z_d_beta = i.sin_alpha * s.d_a_z_d_beta;
     s.cos_alpha_times_d_a_x_d_q_0 = i.cos_alpha * s.d_a_x_d_q_0;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_q_0 = i.sin_alpha * s.d_a_z_d_q_0;
+    s.sin_alpha_times_d_a_z_d_q_0 = i.sin_alpha * s.d_a_z_d_q_0;
     s.cos_alpha_times_d_a_x_d_q_1 = i.cos_alpha * s.d_a_x_d_q_1;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_q_1 = i.sin_alpha * s.d_a_z_d_q_1;
+    s.sin_alpha_times_d_a_z_d_q_1 = i.sin_alpha * s.d_a_z_d_q_1;
     s.cos_alpha_times_d_a_x_d_q_2 = i.cos_alpha * s.d_a_x_d_q_2;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_q_2 = i.sin_alpha * s.d_a_z_d_q_2;
+    s.sin_alpha_times_d_a_z_d_q_2 = i.sin_alpha * s.d_a_z_d_q_2;
     s.cos_alpha_times_d_a_x_d_q_3 = i.cos_alpha * s.d_a_x_d_q_3;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_q_3 = i.sin_alpha * s.d_a_z_d_q_3;
+    s.sin_alpha_times_d_a_z_d_q_3 = i.sin_alpha * s.d_a_z_d_q_3;
     s.cos_alpha_times_d_a_x_d_altitude = i.cos_alpha * s.d_a_x_d_altitude;
-    s.slope_of_axial_force_in_lift_times_d_a_z_d_altitude = i.sin_alpha * s.d_a_z_d_altitude;
-    s.a_z_cos_alpha_minus_a_x_slope_of_axial_force_in_lift = i.a_z * i.cos_alpha - i.a_x * i.sin_alpha;
+    s.sin_alpha_times_d_a_z_d_altitude = i.sin_alpha * s.d_a_z_d_altitude;
+    s.a_z_cos_alpha_minus_a_x_sin_alpha = i.a_z * i.cos_alpha - i.a_x * i.sin_alpha;
     s.inv_velocity_2 = i.inv_velocity * i.inv_velocity;
     s.inv_cos_beta_2 = i.inv_cos_beta * i.inv_cos_beta;
+    s.a_z_cos_alpha_minus_a_x_sin_alpha_times_sin_beta_over_velocity = s.a_z_cos_alpha_minus_a_x_sin_alpha
+        * i.inv_velocity * i.sin_beta;
     s.sin_beta_2 = i.sin_beta * i.sin_beta;
     s.minus_half_q_1 = R::from_f64(-0.5) * x.q_1;
     s.minus_half_q_2 = R::from_f64(-0.5) * x.q_2;
@@ -552,9 +534,9 @@ fn slopes_part_3<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &
     s.half_q_3 = R::HALF * x.q_3;
     s.q_2_two_k_norm_q_3 = x.q_2 * p.two_k_norm * x.q_3;
     s.to_north_x_cos_alpha = i.to_north_x * i.cos_alpha;
-    s.to_north_z_slope_of_axial_force_in_lift = i.to_north_z * i.sin_alpha;
+    s.to_north_z_sin_alpha = i.to_north_z * i.sin_alpha;
     s.to_east_x_cos_alpha = i.to_east_x * i.cos_alpha;
-    s.to_east_z_slope_of_axial_force_in_lift = i.to_east_z * i.sin_alpha;
+    s.to_east_z_sin_alpha = i.to_east_z * i.sin_alpha;
 }
 
 /// Computes [`Slopes`].
@@ -598,60 +580,37 @@ ahv_core::record! {
         d2_rolling_moment_d_roll_rate_d_altitude, d2_yawing_moment_d_roll_rate_d_altitude,
         d2_rolling_moment_d_yaw_rate_d_altitude, d2_yawing_moment_d_yaw_rate_d_altitude,
         d2_rolling_moment_d_altitude_d_altitude, d2_yawing_moment_d_altitude_d_altitude,
-        slope_of_c_m_in_q_hat_inv_velocity_2, downward_z_times_d_slope_of_axial_force_in_lift_d_alpha,
-        downward_x_slope_of_axial_force_in_lift, downward_x_cos_alpha_plus_downward_z_slope_of_axial_force_in_lift,
-        a_x_minus_d_a_z_d_alpha, d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_1,
-        slope_of_axial_force_in_lift_times_d_a_x_d_q_1, cos_beta_times_d_a_y_d_q_1,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_0_d_q_1,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_0_d_q_1,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_1_d_q_1,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_1_d_q_1, d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_2,
-        slope_of_axial_force_in_lift_times_d_a_x_d_q_2, cos_beta_times_d_a_y_d_q_2,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_0_d_q_2,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_0_d_q_2,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_1_d_q_2,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_1_d_q_2,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_2_d_q_2,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_2_d_q_2, d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_3,
-        slope_of_axial_force_in_lift_times_d_a_x_d_q_3, cos_beta_times_d_a_y_d_q_3,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_0_d_q_3,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_0_d_q_3,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_1_d_q_3,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_1_d_q_3,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_2_d_q_3,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_2_d_q_3,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_3_d_q_3,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_q_3_d_q_3,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_velocity_d_altitude,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_velocity_d_altitude,
+        slope_of_c_m_in_q_hat_inv_velocity_2, downward_z_cos_alpha, downward_x_sin_alpha,
+        downward_x_cos_alpha_plus_downward_z_sin_alpha, a_x_minus_d_a_z_d_alpha,
+        cos_alpha_times_d_a_z_d_q_1_minus_sin_alpha_times_d_a_x_d_q_1, cos_beta_times_d_a_y_d_q_1,
+        cos_alpha_times_d2_a_x_d_q_0_d_q_1, sin_alpha_times_d2_a_z_d_q_0_d_q_1, cos_alpha_times_d2_a_x_d_q_1_d_q_1,
+        sin_alpha_times_d2_a_z_d_q_1_d_q_1, cos_alpha_times_d_a_z_d_q_2_minus_sin_alpha_times_d_a_x_d_q_2,
+        cos_beta_times_d_a_y_d_q_2, cos_alpha_times_d2_a_x_d_q_0_d_q_2, sin_alpha_times_d2_a_z_d_q_0_d_q_2,
+        cos_alpha_times_d2_a_x_d_q_1_d_q_2, sin_alpha_times_d2_a_z_d_q_1_d_q_2, cos_alpha_times_d2_a_x_d_q_2_d_q_2,
+        sin_alpha_times_d2_a_z_d_q_2_d_q_2, cos_alpha_times_d_a_z_d_q_3_minus_sin_alpha_times_d_a_x_d_q_3,
+        cos_beta_times_d_a_y_d_q_3, cos_alpha_times_d2_a_x_d_q_0_d_q_3, sin_alpha_times_d2_a_z_d_q_0_d_q_3,
+        cos_alpha_times_d2_a_x_d_q_1_d_q_3, sin_alpha_times_d2_a_z_d_q_1_d_q_3, cos_alpha_times_d2_a_x_d_q_2_d_q_3,
+        sin_alpha_times_d2_a_z_d_q_2_d_q_3, cos_alpha_times_d2_a_x_d_q_3_d_q_3, sin_alpha_times_d2_a_z_d_q_3_d_q_3,
+        cos_alpha_times_d2_a_x_d_velocity_d_altitude, sin_alpha_times_d2_a_z_d_velocity_d_altitude,
         minus_d_a_x_d_altitude_plus_d2_a_z_d_alpha_d_altitude, d_a_z_d_altitude_plus_d2_a_x_d_alpha_d_altitude,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_beta_d_altitude,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_altitude_d_altitude,
-        slope_of_axial_force_in_lift_times_d2_a_z_d_altitude_d_altitude,
-        slope_of_axial_force_in_lift_times_d_a_x_d_velocity,
-        d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_velocity,
-        a_z_plus_d_a_x_d_alpha_times_slope_of_axial_force_in_lift,
-        roll_rate_times_d_slope_of_axial_force_in_lift_d_alpha, yaw_rate_slope_of_axial_force_in_lift,
-        one_plus_sin_beta_2_inv_cos_beta_2,
-        cos_alpha_times_d_a_x_d_q_1_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_1,
-        cos_alpha_times_d_a_x_d_q_2_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_2,
-        cos_alpha_times_d_a_x_d_q_3_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_3, minus_two_k_norm_q_1,
-        minus_two_k_norm_q_0, minus_two_k_norm_q_2, minus_two_k_norm_q_3,
-        to_north_z_times_d_slope_of_axial_force_in_lift_d_alpha, to_north_x_slope_of_axial_force_in_lift,
-        to_north_x_cos_alpha_plus_to_north_z_slope_of_axial_force_in_lift,
-        to_east_z_times_d_slope_of_axial_force_in_lift_d_alpha, to_east_x_slope_of_axial_force_in_lift,
-        to_east_x_cos_alpha_plus_to_east_z_slope_of_axial_force_in_lift, d2_dynamic_pressure_d_velocity_d_altitude,
-        d2_lift_d_velocity_d_altitude, d2_drag_d_velocity_d_altitude, d2_thrust_d_velocity_d_altitude,
-        d2_axial_force_d_velocity_d_altitude, d2_side_force_d_velocity_d_altitude, d2_lift_d_alpha_d_altitude,
-        d2_drag_d_alpha_d_altitude, d2_axial_force_d_alpha_d_altitude, d2_drag_d_beta_d_altitude,
-        d2_axial_force_d_beta_d_altitude, d2_side_force_d_beta_d_altitude, d_slope_of_downward_x_in_norm_squared_d_q_1,
+        sin_alpha_times_d2_a_z_d_beta_d_altitude, cos_alpha_times_d2_a_x_d_altitude_d_altitude,
+        sin_alpha_times_d2_a_z_d_altitude_d_altitude, sin_alpha_times_d_a_x_d_velocity,
+        cos_alpha_times_d_a_z_d_velocity, a_z_plus_d_a_x_d_alpha_times_sin_alpha, roll_rate_cos_alpha,
+        yaw_rate_sin_alpha, roll_rate_cos_alpha_plus_yaw_rate_sin_alpha, one_plus_sin_beta_2_inv_cos_beta_2,
+        sin_alpha_times_d_a_x_d_q_1_minus_cos_alpha_times_d_a_z_d_q_1,
+        cos_alpha_times_d_a_x_d_q_1_plus_sin_alpha_times_d_a_z_d_q_1,
+        sin_alpha_times_d_a_x_d_q_2_minus_cos_alpha_times_d_a_z_d_q_2,
+        cos_alpha_times_d_a_x_d_q_2_plus_sin_alpha_times_d_a_z_d_q_2,
+        sin_alpha_times_d_a_x_d_q_3_minus_cos_alpha_times_d_a_z_d_q_3,
+        cos_alpha_times_d_a_x_d_q_3_plus_sin_alpha_times_d_a_z_d_q_3, minus_two_k_norm_q_1, minus_two_k_norm_q_0,
+        minus_two_k_norm_q_2, minus_two_k_norm_q_3, to_north_z_cos_alpha, to_north_x_sin_alpha,
+        to_north_x_cos_alpha_plus_to_north_z_sin_alpha, to_east_z_cos_alpha, to_east_x_sin_alpha,
+        to_east_x_cos_alpha_plus_to_east_z_sin_alpha, d2_side_force_d_velocity_d_altitude,
+        d2_side_force_d_beta_d_altitude, d_slope_of_downward_x_in_norm_squared_d_q_1,
         d_slope_of_downward_y_in_norm_squared_d_q_1, d_slope_of_downward_z_in_norm_squared_d_q_1,
         d_slope_of_downward_x_in_norm_squared_d_q_2, d_slope_of_downward_y_in_norm_squared_d_q_2,
         d_slope_of_downward_z_in_norm_squared_d_q_2, d_slope_of_downward_x_in_norm_squared_d_q_3,
         d_slope_of_downward_y_in_norm_squared_d_q_3, d_slope_of_downward_z_in_norm_squared_d_q_3,
-        d2_density_d_altitude_d_altitude, d2_dynamic_pressure_d_altitude_d_altitude, d2_lift_d_altitude_d_altitude,
-        d2_drag_d_altitude_d_altitude, d2_thrust_d_altitude_d_altitude, d2_axial_force_d_altitude_d_altitude,
-        d2_side_force_d_altitude_d_altitude,
     }
 }
 
@@ -661,45 +620,41 @@ fn curvatures_part_1<R: Real>(
     h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
-    h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // N*s/m^4
-    h.d2_reference_force_d_velocity_d_altitude = p.s * h.d2_dynamic_pressure_d_velocity_d_altitude; // N*s/m^2
-    h.d2_lift_d_velocity_d_altitude = s.d_c_l_d_velocity * s.d_reference_force_d_altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // N*s/m^4
+    h.d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // N*s/m^2
+    let d2_lift_d_velocity_d_altitude = s.d_c_l_d_velocity * s.d_reference_force_d_altitude
         + i.c_l * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
-    h.d2_drag_d_velocity_d_altitude = s.d_c_d_d_velocity * s.d_reference_force_d_altitude
+    let d2_drag_d_velocity_d_altitude = s.d_c_d_d_velocity * s.d_reference_force_d_altitude
         + i.c_d * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
-    h.d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
+    let d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
         + i.c_t * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
-    h.d2_axial_force_d_velocity_d_altitude = i.sin_alpha * h.d2_lift_d_velocity_d_altitude
-        + s.slope_of_axial_force_in_drag * h.d2_drag_d_velocity_d_altitude
-        + h.d2_thrust_d_velocity_d_altitude; // N*s/m^2
-    h.d2_a_x_d_velocity_d_altitude = h.d2_axial_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
+    let d2_axial_force_d_velocity_d_altitude = i.sin_alpha * d2_lift_d_velocity_d_altitude
+        - i.cos_alpha * d2_drag_d_velocity_d_altitude
+        + d2_thrust_d_velocity_d_altitude; // N*s/m^2
+    h.d2_a_x_d_velocity_d_altitude = d2_axial_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
     h.d2_side_force_d_velocity_d_altitude = s.d_c_y_d_velocity * s.d_reference_force_d_altitude
         + i.c_y * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
     h.d2_a_y_d_velocity_d_altitude = h.d2_side_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
-    h.d2_normal_force_d_velocity_d_altitude = s.slope_of_axial_force_in_drag
-        * h.d2_lift_d_velocity_d_altitude + s.slope_of_normal_force_in_drag
-        * h.d2_drag_d_velocity_d_altitude; // N*s/m^2
+    h.d2_normal_force_d_velocity_d_altitude = -(i.cos_alpha
+        * d2_lift_d_velocity_d_altitude + i.sin_alpha * d2_drag_d_velocity_d_altitude); // N*s/m^2
     h.d2_a_z_d_velocity_d_altitude = h.d2_normal_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
-    h.d2_lift_d_alpha_d_altitude = s.d_c_l_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
-    h.d2_drag_d_alpha_d_altitude = s.d_c_d_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
-    h.d2_axial_force_d_alpha_d_altitude =
-        i.sin_alpha * (s.d_drag_d_altitude + h.d2_lift_d_alpha_d_altitude)
-        + i.cos_alpha * s.d_lift_d_altitude
-        + s.slope_of_axial_force_in_drag * h.d2_drag_d_alpha_d_altitude; // N/rad/m
-    h.d2_a_x_d_alpha_d_altitude = h.d2_axial_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
-    h.d2_normal_force_d_alpha_d_altitude = i.sin_alpha * s.d_lift_d_altitude
-        - i.cos_alpha * s.d_drag_d_altitude
-        + s.slope_of_axial_force_in_drag * h.d2_lift_d_alpha_d_altitude
-        + s.slope_of_normal_force_in_drag * h.d2_drag_d_alpha_d_altitude; // N/rad/m
+    let d2_lift_d_alpha_d_altitude = s.d_c_l_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
+    let d2_drag_d_alpha_d_altitude = s.d_c_d_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
+    let d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude = s.d_lift_d_altitude - d2_drag_d_alpha_d_altitude;
+    let d2_axial_force_d_alpha_d_altitude = i.cos_alpha
+        * d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude + i.sin_alpha
+        * (s.d_drag_d_altitude + d2_lift_d_alpha_d_altitude); // N/rad/m
+    h.d2_a_x_d_alpha_d_altitude = d2_axial_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
+    h.d2_normal_force_d_alpha_d_altitude = i.sin_alpha
+        * d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude + i.cos_alpha
+        * (-s.d_drag_d_altitude - d2_lift_d_alpha_d_altitude); // N/rad/m
     h.d2_a_z_d_alpha_d_altitude = h.d2_normal_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
-    h.d2_drag_d_beta_d_altitude = p.two_c_d_beta_2 * x.beta * s.d_reference_force_d_altitude; // N/rad/m
-    h.d2_axial_force_d_beta_d_altitude = s.slope_of_axial_force_in_drag
-        * h.d2_drag_d_beta_d_altitude; // N/rad/m
-    h.d2_a_x_d_beta_d_altitude = h.d2_axial_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
+    let d2_drag_d_beta_d_altitude = p.two_c_d_beta_2 * x.beta * s.d_reference_force_d_altitude; // N/rad/m
+    let d2_axial_force_d_beta_d_altitude = -i.cos_alpha * d2_drag_d_beta_d_altitude; // N/rad/m
+    h.d2_a_x_d_beta_d_altitude = d2_axial_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
     h.d2_side_force_d_beta_d_altitude = s.d_c_y_d_beta * s.d_reference_force_d_altitude; // N/rad/m
     h.d2_a_y_d_beta_d_altitude = h.d2_side_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
-    h.d2_normal_force_d_beta_d_altitude = s.slope_of_normal_force_in_drag
-        * h.d2_drag_d_beta_d_altitude; // N/rad/m
+    h.d2_normal_force_d_beta_d_altitude = -i.sin_alpha * d2_drag_d_beta_d_altitude; // N/rad/m
     h.d2_a_z_d_beta_d_altitude = h.d2_normal_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to q_1
@@ -723,7 +678,13 @@ fn curvatures_part_1<R: Real>(
     h.d2_downward_z_d_q_0_d_q_1 = R::TWO * x.q_0 * h.d_slope_of_downward_z_in_norm_squared_d_q_1
         - R::from_f64(4.0) * h.q_1_inv_norm_squared_2_q_0;
     h.d2_a_z_d_q_0_d_q_1 = p.g * h.d2_downward_z_d_q_0_d_q_1; // m/s^2
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to q_2
     h.d_slope_of_downward_x_in_norm_squared_d_q_2 = h.inv_norm_squared_2
         * (R::from_f64(4.0) * i.downward_x * x.q_2 + R::TWO * x.q_0);
@@ -740,14 +701,6 @@ fn curvatures_part_1<R: Real>(
     h.d_slope_of_downward_z_in_norm_squared_d_q_2 = h.inv_norm_squared_2
         * (R::TWO * x.q_2 + R::from_f64(4.0) * i.downward_z * x.q_2);
     h.q_2_inv_norm_squared_2_q_0 = x.q_2 * h.inv_norm_squared_2 * x.q_0;
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to q_2
     h.d2_downward_z_d_q_0_d_q_2 = R::TWO * x.q_0 * h.d_slope_of_downward_z_in_norm_squared_d_q_2
         - R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_0;
     h.d2_a_z_d_q_0_d_q_2 = p.g * h.d2_downward_z_d_q_0_d_q_2; // m/s^2
@@ -810,7 +763,13 @@ fn curvatures_part_2<R: Real>(
     h.d2_downward_z_d_q_1_d_q_3 = R::from_f64(4.0) * h.q_1_inv_norm_squared_2_q_3
         + R::TWO * x.q_1 * h.d_slope_of_downward_z_in_norm_squared_d_q_3;
     h.d2_a_z_d_q_1_d_q_3 = p.g * h.d2_downward_z_d_q_1_d_q_3; // m/s^2
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_3<R: Real>(
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to q_2
     h.d2_downward_x_d_q_2_d_q_2 = R::TWO * s.slope_of_downward_x_in_norm_squared
         + R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_0
@@ -837,14 +796,6 @@ fn curvatures_part_2<R: Real>(
     h.d2_downward_z_d_q_2_d_q_3 = R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_3
         + R::TWO * x.q_2 * h.d_slope_of_downward_z_in_norm_squared_d_q_3;
     h.d2_a_z_d_q_2_d_q_3 = p.g * h.d2_downward_z_d_q_2_d_q_3; // m/s^2
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_3<R: Real>(
-    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to q_3
     h.d2_downward_x_d_q_3_d_q_3 = R::TWO * s.slope_of_downward_x_in_norm_squared
         - R::from_f64(4.0) * h.q_1_inv_norm_squared_2_q_3
         + R::TWO * x.q_3 * h.d_slope_of_downward_x_in_norm_squared_d_q_3;
@@ -860,22 +811,21 @@ fn curvatures_part_3<R: Real>(
     h.d2_a_z_d_q_3_d_q_3 = p.g * h.d2_downward_z_d_q_3_d_q_3; // m/s^2
 
     // Derivatives with respect to altitude
-    h.d2_density_d_altitude_d_altitude = i.density * p.inv_h_s_2; // kg/m^5
-    h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * h.d2_density_d_altitude_d_altitude; // N/m^4
-    h.d2_reference_force_d_altitude_d_altitude = p.s * h.d2_dynamic_pressure_d_altitude_d_altitude; // N/m^2
-    h.d2_lift_d_altitude_d_altitude = i.c_l * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_drag_d_altitude_d_altitude = i.c_d * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_thrust_d_altitude_d_altitude = i.c_t * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_axial_force_d_altitude_d_altitude = i.sin_alpha * h.d2_lift_d_altitude_d_altitude
-        + s.slope_of_axial_force_in_drag * h.d2_drag_d_altitude_d_altitude
-        + h.d2_thrust_d_altitude_d_altitude; // N/m^2
-    h.d2_a_x_d_altitude_d_altitude = h.d2_axial_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
-    h.d2_side_force_d_altitude_d_altitude = i.c_y * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_a_y_d_altitude_d_altitude = h.d2_side_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
-    h.d2_normal_force_d_altitude_d_altitude = s.slope_of_axial_force_in_drag
-        * h.d2_lift_d_altitude_d_altitude + s.slope_of_normal_force_in_drag
-        * h.d2_drag_d_altitude_d_altitude; // N/m^2
+    let d2_density_d_altitude_d_altitude = i.density * p.inv_h_s_2; // kg/m^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // N/m^4
+    h.d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // N/m^2
+    let d2_lift_d_altitude_d_altitude = i.c_l * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    let d2_drag_d_altitude_d_altitude = i.c_d * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    let d2_thrust_d_altitude_d_altitude = i.c_t * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    let d2_axial_force_d_altitude_d_altitude = i.sin_alpha * d2_lift_d_altitude_d_altitude
+        - i.cos_alpha * d2_drag_d_altitude_d_altitude
+        + d2_thrust_d_altitude_d_altitude; // N/m^2
+    h.d2_a_x_d_altitude_d_altitude = d2_axial_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
+    let d2_side_force_d_altitude_d_altitude = i.c_y * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    h.d2_a_y_d_altitude_d_altitude = d2_side_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
+    h.d2_normal_force_d_altitude_d_altitude = -(i.cos_alpha
+        * d2_lift_d_altitude_d_altitude + i.sin_alpha * d2_drag_d_altitude_d_altitude); // N/m^2
     h.d2_a_z_d_altitude_d_altitude = h.d2_normal_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
     h.d2_rolling_moment_d_velocity_d_altitude = p.b
         * (s.d_c_r_d_velocity * s.d_reference_force_d_altitude
@@ -898,26 +848,7 @@ fn curvatures_part_3<R: Real>(
     h.d2_rolling_moment_d_altitude_d_altitude = i.c_r * p.b
         * h.d2_reference_force_d_altitude_d_altitude; // N/m
     h.d2_yawing_moment_d_altitude_d_altitude = i.c_n * p.b
-        * h.d2_reference_force_d_altitude_d_altitude + p.x_cg
-        * h.d2_side_force_d_altitude_d_altitude; // N/m
-
-    // Further values
-    h.slope_of_c_r_in_p_hat_inv_velocity_2 = s.slope_of_c_r_in_p_hat * s.inv_velocity_2;
-    h.d2_yawing_moment_d_velocity_d_roll_rate_over_b_2_c_n_p_hat = R::HALF * s.d_reference_force_d_velocity
-        * i.inv_velocity - R::HALF * i.reference_force * s.inv_velocity_2;
-    h.slope_of_c_m_in_q_hat_inv_velocity_2 = s.slope_of_c_m_in_q_hat * s.inv_velocity_2;
-    h.downward_z_times_d_slope_of_axial_force_in_lift_d_alpha = i.downward_z * i.cos_alpha;
-    h.downward_x_slope_of_axial_force_in_lift = i.downward_x * i.sin_alpha;
-    h.downward_x_cos_alpha_plus_downward_z_slope_of_axial_force_in_lift = s.downward_x_cos_alpha
-        + s.downward_z_slope_of_axial_force_in_lift;
-    h.a_x_minus_d_a_z_d_alpha = i.a_x - s.d_a_z_d_alpha;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_1 = i.cos_alpha * s.d_a_z_d_q_1;
-    h.slope_of_axial_force_in_lift_times_d_a_x_d_q_1 = i.sin_alpha * s.d_a_x_d_q_1;
-    h.cos_beta_times_d_a_y_d_q_1 = i.cos_beta * s.d_a_y_d_q_1;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_0_d_q_1 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_1;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_0_d_q_1 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_1;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_1_d_q_1 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_1;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_1_d_q_1 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_1;
+        * h.d2_reference_force_d_altitude_d_altitude + p.x_cg * d2_side_force_d_altitude_d_altitude; // N/m
 }
 
 /// Fills a part of [`Curvatures`].
@@ -926,59 +857,83 @@ fn curvatures_part_4<R: Real>(
     h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Further values
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_2 = i.cos_alpha * s.d_a_z_d_q_2;
-    h.slope_of_axial_force_in_lift_times_d_a_x_d_q_2 = i.sin_alpha * s.d_a_x_d_q_2;
+    h.slope_of_c_r_in_p_hat_inv_velocity_2 = s.slope_of_c_r_in_p_hat * s.inv_velocity_2;
+    h.d2_yawing_moment_d_velocity_d_roll_rate_over_b_2_c_n_p_hat = R::HALF * s.d_reference_force_d_velocity
+        * i.inv_velocity - R::HALF * i.reference_force * s.inv_velocity_2;
+    h.slope_of_c_m_in_q_hat_inv_velocity_2 = s.slope_of_c_m_in_q_hat * s.inv_velocity_2;
+    h.downward_z_cos_alpha = i.downward_z * i.cos_alpha;
+    h.downward_x_sin_alpha = i.downward_x * i.sin_alpha;
+    h.downward_x_cos_alpha_plus_downward_z_sin_alpha = s.downward_x_cos_alpha + s.downward_z_sin_alpha;
+    h.a_x_minus_d_a_z_d_alpha = i.a_x - s.d_a_z_d_alpha;
+    let cos_alpha_times_d_a_z_d_q_1 = i.cos_alpha * s.d_a_z_d_q_1;
+    let sin_alpha_times_d_a_x_d_q_1 = i.sin_alpha * s.d_a_x_d_q_1;
+    h.cos_alpha_times_d_a_z_d_q_1_minus_sin_alpha_times_d_a_x_d_q_1 = cos_alpha_times_d_a_z_d_q_1
+        - sin_alpha_times_d_a_x_d_q_1;
+    h.cos_beta_times_d_a_y_d_q_1 = i.cos_beta * s.d_a_y_d_q_1;
+    h.cos_alpha_times_d2_a_x_d_q_0_d_q_1 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_1;
+    h.sin_alpha_times_d2_a_z_d_q_0_d_q_1 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_1;
+    h.cos_alpha_times_d2_a_x_d_q_1_d_q_1 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_1;
+    h.sin_alpha_times_d2_a_z_d_q_1_d_q_1 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_1;
+    let cos_alpha_times_d_a_z_d_q_2 = i.cos_alpha * s.d_a_z_d_q_2;
+    let sin_alpha_times_d_a_x_d_q_2 = i.sin_alpha * s.d_a_x_d_q_2;
+    h.cos_alpha_times_d_a_z_d_q_2_minus_sin_alpha_times_d_a_x_d_q_2 = cos_alpha_times_d_a_z_d_q_2
+        - sin_alpha_times_d_a_x_d_q_2;
     h.cos_beta_times_d_a_y_d_q_2 = i.cos_beta * s.d_a_y_d_q_2;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_0_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_2;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_0_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_2;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_1_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_2;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_1_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_2;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_2_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_2_d_q_2;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_2_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_2_d_q_2;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_q_3 = i.cos_alpha * s.d_a_z_d_q_3;
-    h.slope_of_axial_force_in_lift_times_d_a_x_d_q_3 = i.sin_alpha * s.d_a_x_d_q_3;
+    h.cos_alpha_times_d2_a_x_d_q_0_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_2;
+    h.sin_alpha_times_d2_a_z_d_q_0_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_2;
+    h.cos_alpha_times_d2_a_x_d_q_1_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_2;
+    h.sin_alpha_times_d2_a_z_d_q_1_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_2;
+    h.cos_alpha_times_d2_a_x_d_q_2_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_2_d_q_2;
+    h.sin_alpha_times_d2_a_z_d_q_2_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_2_d_q_2;
+    let cos_alpha_times_d_a_z_d_q_3 = i.cos_alpha * s.d_a_z_d_q_3;
+    let sin_alpha_times_d_a_x_d_q_3 = i.sin_alpha * s.d_a_x_d_q_3;
+    h.cos_alpha_times_d_a_z_d_q_3_minus_sin_alpha_times_d_a_x_d_q_3 = cos_alpha_times_d_a_z_d_q_3
+        - sin_alpha_times_d_a_x_d_q_3;
     h.cos_beta_times_d_a_y_d_q_3 = i.cos_beta * s.d_a_y_d_q_3;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_0_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_3;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_0_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_3;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_1_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_3;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_1_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_3;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_2_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_2_d_q_3;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_2_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_2_d_q_3;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_q_3_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_3_d_q_3;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_q_3_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_3_d_q_3;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_velocity_d_altitude = i.cos_alpha
-        * h.d2_a_x_d_velocity_d_altitude;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_velocity_d_altitude = i.sin_alpha * h.d2_a_z_d_velocity_d_altitude;
+    h.cos_alpha_times_d2_a_x_d_q_0_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_3;
+    h.sin_alpha_times_d2_a_z_d_q_0_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_3;
+    h.cos_alpha_times_d2_a_x_d_q_1_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_3;
+    h.sin_alpha_times_d2_a_z_d_q_1_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_3;
+    h.cos_alpha_times_d2_a_x_d_q_2_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_2_d_q_3;
+    h.sin_alpha_times_d2_a_z_d_q_2_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_2_d_q_3;
+    h.cos_alpha_times_d2_a_x_d_q_3_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_3_d_q_3;
+    h.sin_alpha_times_d2_a_z_d_q_3_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_3_d_q_3;
+    h.cos_alpha_times_d2_a_x_d_velocity_d_altitude = i.cos_alpha * h.d2_a_x_d_velocity_d_altitude;
+    h.sin_alpha_times_d2_a_z_d_velocity_d_altitude = i.sin_alpha * h.d2_a_z_d_velocity_d_altitude;
     h.minus_d_a_x_d_altitude_plus_d2_a_z_d_alpha_d_altitude = h.d2_a_z_d_alpha_d_altitude - s.d_a_x_d_altitude;
     h.d_a_z_d_altitude_plus_d2_a_x_d_alpha_d_altitude = s.d_a_z_d_altitude + h.d2_a_x_d_alpha_d_altitude;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_beta_d_altitude = i.sin_alpha * h.d2_a_z_d_beta_d_altitude;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d2_a_x_d_altitude_d_altitude = i.cos_alpha
-        * h.d2_a_x_d_altitude_d_altitude;
-    h.slope_of_axial_force_in_lift_times_d2_a_z_d_altitude_d_altitude = i.sin_alpha * h.d2_a_z_d_altitude_d_altitude;
-    h.slope_of_axial_force_in_lift_times_d_a_x_d_velocity = i.sin_alpha * s.d_a_x_d_velocity;
-    h.d_slope_of_axial_force_in_lift_d_alpha_times_d_a_z_d_velocity = i.cos_alpha * s.d_a_z_d_velocity;
-    h.a_z_plus_d_a_x_d_alpha_times_slope_of_axial_force_in_lift = i.sin_alpha * s.a_z_plus_d_a_x_d_alpha;
-    h.roll_rate_times_d_slope_of_axial_force_in_lift_d_alpha = x.roll_rate * i.cos_alpha;
-    h.yaw_rate_slope_of_axial_force_in_lift = x.yaw_rate * i.sin_alpha;
+    h.sin_alpha_times_d2_a_z_d_beta_d_altitude = i.sin_alpha * h.d2_a_z_d_beta_d_altitude;
+    h.cos_alpha_times_d2_a_x_d_altitude_d_altitude = i.cos_alpha * h.d2_a_x_d_altitude_d_altitude;
+    h.sin_alpha_times_d2_a_z_d_altitude_d_altitude = i.sin_alpha * h.d2_a_z_d_altitude_d_altitude;
+    h.sin_alpha_times_d_a_x_d_velocity = i.sin_alpha * s.d_a_x_d_velocity;
+    h.cos_alpha_times_d_a_z_d_velocity = i.cos_alpha * s.d_a_z_d_velocity;
+    h.a_z_plus_d_a_x_d_alpha_times_sin_alpha = i.sin_alpha * s.a_z_plus_d_a_x_d_alpha;
+    h.roll_rate_cos_alpha = x.roll_rate * i.cos_alpha;
+    h.yaw_rate_sin_alpha = x.yaw_rate * i.sin_alpha;
+    h.roll_rate_cos_alpha_plus_yaw_rate_sin_alpha = h.roll_rate_cos_alpha + h.yaw_rate_sin_alpha;
     h.one_plus_sin_beta_2_inv_cos_beta_2 = R::ONE + s.sin_beta_2 * s.inv_cos_beta_2;
-    h.cos_alpha_times_d_a_x_d_q_1_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_1 = s.cos_alpha_times_d_a_x_d_q_1
-        + s.slope_of_axial_force_in_lift_times_d_a_z_d_q_1;
-    h.cos_alpha_times_d_a_x_d_q_2_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_2 = s.cos_alpha_times_d_a_x_d_q_2
-        + s.slope_of_axial_force_in_lift_times_d_a_z_d_q_2;
-    h.cos_alpha_times_d_a_x_d_q_3_plus_slope_of_axial_force_in_lift_times_d_a_z_d_q_3 = s.cos_alpha_times_d_a_x_d_q_3
-        + s.slope_of_axial_force_in_lift_times_d_a_z_d_q_3;
+    h.sin_alpha_times_d_a_x_d_q_1_minus_cos_alpha_times_d_a_z_d_q_1 = sin_alpha_times_d_a_x_d_q_1
+        - cos_alpha_times_d_a_z_d_q_1;
+    h.cos_alpha_times_d_a_x_d_q_1_plus_sin_alpha_times_d_a_z_d_q_1 = s.cos_alpha_times_d_a_x_d_q_1
+        + s.sin_alpha_times_d_a_z_d_q_1;
+    h.sin_alpha_times_d_a_x_d_q_2_minus_cos_alpha_times_d_a_z_d_q_2 = sin_alpha_times_d_a_x_d_q_2
+        - cos_alpha_times_d_a_z_d_q_2;
+    h.cos_alpha_times_d_a_x_d_q_2_plus_sin_alpha_times_d_a_z_d_q_2 = s.cos_alpha_times_d_a_x_d_q_2
+        + s.sin_alpha_times_d_a_z_d_q_2;
+    h.sin_alpha_times_d_a_x_d_q_3_minus_cos_alpha_times_d_a_z_d_q_3 = sin_alpha_times_d_a_x_d_q_3
+        - cos_alpha_times_d_a_z_d_q_3;
+    h.cos_alpha_times_d_a_x_d_q_3_plus_sin_alpha_times_d_a_z_d_q_3 = s.cos_alpha_times_d_a_x_d_q_3
+        + s.sin_alpha_times_d_a_z_d_q_3;
     h.minus_two_k_norm_q_1 = p.minus_two_k_norm * x.q_1;
     h.minus_two_k_norm_q_0 = p.minus_two_k_norm * x.q_0;
     h.minus_two_k_norm_q_2 = p.minus_two_k_norm * x.q_2;
     h.minus_two_k_norm_q_3 = p.minus_two_k_norm * x.q_3;
-    h.to_north_z_times_d_slope_of_axial_force_in_lift_d_alpha = i.to_north_z * i.cos_alpha;
-    h.to_north_x_slope_of_axial_force_in_lift = i.to_north_x * i.sin_alpha;
-    h.to_north_x_cos_alpha_plus_to_north_z_slope_of_axial_force_in_lift = s.to_north_x_cos_alpha
-        + s.to_north_z_slope_of_axial_force_in_lift;
-    h.to_east_z_times_d_slope_of_axial_force_in_lift_d_alpha = i.to_east_z * i.cos_alpha;
-    h.to_east_x_slope_of_axial_force_in_lift = i.to_east_x * i.sin_alpha;
-    h.to_east_x_cos_alpha_plus_to_east_z_slope_of_axial_force_in_lift = s.to_east_x_cos_alpha
-        + s.to_east_z_slope_of_axial_force_in_lift;
+    h.to_north_z_cos_alpha = i.to_north_z * i.cos_alpha;
+    h.to_north_x_sin_alpha = i.to_north_x * i.sin_alpha;
+    h.to_north_x_cos_alpha_plus_to_north_z_sin_alpha = s.to_north_x_cos_alpha + s.to_north_z_sin_alpha;
+    h.to_east_z_cos_alpha = i.to_east_z * i.cos_alpha;
+    h.to_east_x_sin_alpha = i.to_east_x * i.sin_alpha;
+    h.to_east_x_cos_alpha_plus_to_east_z_sin_alpha = s.to_east_x_cos_alpha + s.to_east_z_sin_alpha;
 }
 
 /// Computes [`Curvatures`].
@@ -998,23 +953,113 @@ ahv_core::record! {
     /// Quantities of the derivatives with respect to parameters that several parts of these need. A field without
     /// a description is what its name says: its formula and unit stand in [`sensitivities`].
     pub struct Sensitivities<R> {
-        cos_alpha_slope_of_axial_force_in_drag, cos_alpha_slope_of_axial_force_in_drag_alpha,
-        cos_alpha_slope_of_axial_force_in_drag_alpha_2, i_xz_b_over_inertia_reference_force_beta,
-        i_xz_b_over_inertia_reference_force_mach_beta, i_xz_b_over_inertia_reference_force_delta_a,
-        i_xz_b_over_inertia_reference_force_delta_r, i_xz_b_over_inertia_reference_force_p_hat,
-        i_xz_b_over_inertia_reference_force_r_hat,
+        d_axial_force_d_c_l_0, d_a_x_d_c_l_0, d_normal_force_d_c_l_0, d_axial_force_d_c_l_alpha,
+        d_normal_force_d_c_l_alpha, d_axial_force_d_c_l_alpha_2, d_normal_force_d_c_l_alpha_2,
+        d_axial_force_d_c_l_delta_e, d_normal_force_d_c_d_0, d_a_z_d_c_d_0, d_a_x_d_c_d_mach, d_normal_force_d_c_d_mach,
+        d_a_z_d_c_d_mach, d_a_x_d_c_d_mach_2, d_normal_force_d_c_d_mach_2, d_a_z_d_c_d_mach_2,
+        d_normal_force_d_c_d_alpha, d_a_z_d_c_d_alpha, d_normal_force_d_c_d_alpha_2, d_a_z_d_c_d_alpha_2,
+        d_a_x_d_c_d_alpha_2_mach, d_normal_force_d_c_d_alpha_2_mach, d_a_z_d_c_d_alpha_2_mach,
+        d_a_x_d_c_d_alpha_delta_e, d_normal_force_d_c_d_alpha_delta_e, d_a_z_d_c_d_alpha_delta_e, d_a_x_d_c_d_beta_2,
+        d_normal_force_d_c_d_beta_2, d_a_z_d_c_d_beta_2, d_a_x_d_c_d_delta_e_2, d_normal_force_d_c_d_delta_e_2,
+        d_a_z_d_c_d_delta_e_2, d_a_x_d_c_d_delta_a_2, d_normal_force_d_c_d_delta_a_2, d_a_z_d_c_d_delta_a_2,
+        d_a_x_d_c_d_delta_r_2, d_normal_force_d_c_d_delta_r_2, d_a_z_d_c_d_delta_r_2, sin_alpha_times_d_a_z_d_c_l_0,
+        sin_alpha_times_d_a_z_d_c_l_alpha, sin_alpha_times_d_a_z_d_c_l_alpha_2, cos_alpha_times_d_a_z_d_c_l_0,
+        cos_alpha_times_d_a_z_d_c_l_0_plus_sin_alpha_times_d_a_z_d_c_d_0,
+        cos_alpha_times_d_a_x_d_c_d_mach_plus_sin_alpha_times_d_a_z_d_c_d_mach,
+        cos_alpha_times_d_a_x_d_c_d_mach_2_plus_sin_alpha_times_d_a_z_d_c_d_mach_2, cos_alpha_times_d_a_z_d_c_l_alpha,
+        cos_alpha_times_d_a_z_d_c_l_alpha_plus_sin_alpha_times_d_a_z_d_c_d_alpha, cos_alpha_times_d_a_z_d_c_l_alpha_2,
+        cos_alpha_times_d_a_z_d_c_l_alpha_2_plus_sin_alpha_times_d_a_z_d_c_d_alpha_2,
+        cos_alpha_times_d_a_x_d_c_d_beta_2_plus_sin_alpha_times_d_a_z_d_c_d_beta_2,
+        cos_alpha_times_d_a_x_d_c_d_delta_e_2_plus_sin_alpha_times_d_a_z_d_c_d_delta_e_2,
+        cos_alpha_times_d_a_x_d_c_d_delta_a_2_plus_sin_alpha_times_d_a_z_d_c_d_delta_a_2,
+        cos_alpha_times_d_a_x_d_c_d_delta_r_2_plus_sin_alpha_times_d_a_z_d_c_d_delta_r_2,
+        i_xz_b_over_inertia_reference_force_beta, i_xz_b_over_inertia_reference_force_mach_beta,
+        i_xz_b_over_inertia_reference_force_delta_a, i_xz_b_over_inertia_reference_force_delta_r,
+        i_xz_b_over_inertia_reference_force_p_hat, i_xz_b_over_inertia_reference_force_r_hat,
     }
 }
 
 /// Computes [`Sensitivities`].
 #[inline(always)]
-pub fn sensitivities<R: Real>(
-    x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) -> Sensitivities<R> {
+pub fn sensitivities<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) -> Sensitivities<R> {
     let mut q = Sensitivities::splat(R::ZERO);
-    q.cos_alpha_slope_of_axial_force_in_drag = i.cos_alpha * s.slope_of_axial_force_in_drag;
-    q.cos_alpha_slope_of_axial_force_in_drag_alpha = i.cos_alpha * s.slope_of_axial_force_in_drag * x.alpha;
-    q.cos_alpha_slope_of_axial_force_in_drag_alpha_2 = i.cos_alpha * s.slope_of_axial_force_in_drag * i.alpha_2;
+
+    // Derivatives with respect to parameters
+    q.d_axial_force_d_c_l_0 = i.sin_alpha * i.reference_force; // N
+    q.d_a_x_d_c_l_0 = q.d_axial_force_d_c_l_0 * p.inv_m; // m/s^2
+    q.d_normal_force_d_c_l_0 = -i.cos_alpha * i.reference_force; // N
+    let d_a_z_d_c_l_0 = q.d_normal_force_d_c_l_0 * p.inv_m; // m/s^2
+    q.d_axial_force_d_c_l_alpha = q.d_axial_force_d_c_l_0 * x.alpha; // N*rad
+    q.d_normal_force_d_c_l_alpha = -i.cos_alpha * i.reference_force * x.alpha; // N*rad
+    let d_a_z_d_c_l_alpha = q.d_normal_force_d_c_l_alpha * p.inv_m; // m*rad/s^2
+    q.d_axial_force_d_c_l_alpha_2 = q.d_axial_force_d_c_l_0 * i.alpha_2; // N*rad^2
+    q.d_normal_force_d_c_l_alpha_2 = -i.cos_alpha * i.reference_force * i.alpha_2; // N*rad^2
+    let d_a_z_d_c_l_alpha_2 = q.d_normal_force_d_c_l_alpha_2 * p.inv_m; // m*rad^2/s^2
+    q.d_axial_force_d_c_l_delta_e = q.d_axial_force_d_c_l_0 * u.delta_e; // N*rad
+    q.d_normal_force_d_c_d_0 = -q.d_axial_force_d_c_l_0; // N
+    q.d_a_z_d_c_d_0 = q.d_normal_force_d_c_d_0 * p.inv_m; // m/s^2
+    let d_axial_force_d_c_d_mach = -i.cos_alpha * i.reference_force * i.mach; // N
+    q.d_a_x_d_c_d_mach = d_axial_force_d_c_d_mach * p.inv_m; // m/s^2
+    q.d_normal_force_d_c_d_mach = -q.d_axial_force_d_c_l_0 * i.mach; // N
+    q.d_a_z_d_c_d_mach = q.d_normal_force_d_c_d_mach * p.inv_m; // m/s^2
+    let d_axial_force_d_c_d_mach_2 = -i.cos_alpha * i.reference_force * i.mach_2; // N
+    q.d_a_x_d_c_d_mach_2 = d_axial_force_d_c_d_mach_2 * p.inv_m; // m/s^2
+    q.d_normal_force_d_c_d_mach_2 = -q.d_axial_force_d_c_l_0 * i.mach_2; // N
+    q.d_a_z_d_c_d_mach_2 = q.d_normal_force_d_c_d_mach_2 * p.inv_m; // m/s^2
+    q.d_normal_force_d_c_d_alpha = -q.d_axial_force_d_c_l_alpha; // N*rad
+    q.d_a_z_d_c_d_alpha = q.d_normal_force_d_c_d_alpha * p.inv_m; // m*rad/s^2
+    q.d_normal_force_d_c_d_alpha_2 = -q.d_axial_force_d_c_l_alpha_2; // N*rad^2
+    q.d_a_z_d_c_d_alpha_2 = q.d_normal_force_d_c_d_alpha_2 * p.inv_m; // m*rad^2/s^2
+    let d_axial_force_d_c_d_alpha_2_mach = -i.cos_alpha * i.reference_force * i.mach * i.alpha_2; // N*rad^2
+    q.d_a_x_d_c_d_alpha_2_mach = d_axial_force_d_c_d_alpha_2_mach * p.inv_m; // m*rad^2/s^2
+    q.d_normal_force_d_c_d_alpha_2_mach = -q.d_axial_force_d_c_l_alpha_2 * i.mach; // N*rad^2
+    q.d_a_z_d_c_d_alpha_2_mach = q.d_normal_force_d_c_d_alpha_2_mach * p.inv_m; // m*rad^2/s^2
+    let d_axial_force_d_c_d_alpha_delta_e = -i.cos_alpha * i.reference_force * u.delta_e * x.alpha; // N*rad^2
+    q.d_a_x_d_c_d_alpha_delta_e = d_axial_force_d_c_d_alpha_delta_e * p.inv_m; // m*rad^2/s^2
+    q.d_normal_force_d_c_d_alpha_delta_e = -q.d_axial_force_d_c_l_delta_e * x.alpha; // N*rad^2
+    q.d_a_z_d_c_d_alpha_delta_e = q.d_normal_force_d_c_d_alpha_delta_e * p.inv_m; // m*rad^2/s^2
+    let d_axial_force_d_c_d_beta_2 = -i.cos_alpha * i.reference_force * i.beta_2; // N*rad^2
+    q.d_a_x_d_c_d_beta_2 = d_axial_force_d_c_d_beta_2 * p.inv_m; // m*rad^2/s^2
+    q.d_normal_force_d_c_d_beta_2 = -q.d_axial_force_d_c_l_0 * i.beta_2; // N*rad^2
+    q.d_a_z_d_c_d_beta_2 = q.d_normal_force_d_c_d_beta_2 * p.inv_m; // m*rad^2/s^2
+    let d_axial_force_d_c_d_delta_e_2 = -i.cos_alpha * i.reference_force * i.delta_e_2; // N*rad^2
+    q.d_a_x_d_c_d_delta_e_2 = d_axial_force_d_c_d_delta_e_2 * p.inv_m; // m*rad^2/s^2
+    q.d_normal_force_d_c_d_delta_e_2 = -q.d_axial_force_d_c_l_0 * i.delta_e_2; // N*rad^2
+    q.d_a_z_d_c_d_delta_e_2 = q.d_normal_force_d_c_d_delta_e_2 * p.inv_m; // m*rad^2/s^2
+    let d_axial_force_d_c_d_delta_a_2 = -i.cos_alpha * i.reference_force * i.delta_a_2; // N*rad^2
+    q.d_a_x_d_c_d_delta_a_2 = d_axial_force_d_c_d_delta_a_2 * p.inv_m; // m*rad^2/s^2
+    q.d_normal_force_d_c_d_delta_a_2 = -q.d_axial_force_d_c_l_0 * i.delta_a_2; // N*rad^2
+    q.d_a_z_d_c_d_delta_a_2 = q.d_normal_force_d_c_d_delta_a_2 * p.inv_m; // m*rad^2/s^2
+    let d_axial_force_d_c_d_delta_r_2 = -i.cos_alpha * i.reference_force * i.delta_r_2; // N*rad^2
+    q.d_a_x_d_c_d_delta_r_2 = d_axial_force_d_c_d_delta_r_2 * p.inv_m; // m*rad^2/s^2
+    q.d_normal_force_d_c_d_delta_r_2 = -q.d_axial_force_d_c_l_0 * i.delta_r_2; // N*rad^2
+    q.d_a_z_d_c_d_delta_r_2 = q.d_normal_force_d_c_d_delta_r_2 * p.inv_m; // m*rad^2/s^2
+
+    // Further values
+    q.sin_alpha_times_d_a_z_d_c_l_0 = i.sin_alpha * d_a_z_d_c_l_0;
+    q.sin_alpha_times_d_a_z_d_c_l_alpha = i.sin_alpha * d_a_z_d_c_l_alpha;
+    q.sin_alpha_times_d_a_z_d_c_l_alpha_2 = i.sin_alpha * d_a_z_d_c_l_alpha_2;
+    q.cos_alpha_times_d_a_z_d_c_l_0 = i.cos_alpha * d_a_z_d_c_l_0;
+    q.cos_alpha_times_d_a_z_d_c_l_0_plus_sin_alpha_times_d_a_z_d_c_d_0 = q.cos_alpha_times_d_a_z_d_c_l_0
+        + i.sin_alpha * q.d_a_z_d_c_d_0;
+    q.cos_alpha_times_d_a_x_d_c_d_mach_plus_sin_alpha_times_d_a_z_d_c_d_mach = i.cos_alpha * q.d_a_x_d_c_d_mach
+        + i.sin_alpha * q.d_a_z_d_c_d_mach;
+    q.cos_alpha_times_d_a_x_d_c_d_mach_2_plus_sin_alpha_times_d_a_z_d_c_d_mach_2 = i.cos_alpha * q.d_a_x_d_c_d_mach_2
+        + i.sin_alpha * q.d_a_z_d_c_d_mach_2;
+    q.cos_alpha_times_d_a_z_d_c_l_alpha = i.cos_alpha * d_a_z_d_c_l_alpha;
+    q.cos_alpha_times_d_a_z_d_c_l_alpha_plus_sin_alpha_times_d_a_z_d_c_d_alpha = q.cos_alpha_times_d_a_z_d_c_l_alpha
+        + i.sin_alpha * q.d_a_z_d_c_d_alpha;
+    q.cos_alpha_times_d_a_z_d_c_l_alpha_2 = i.cos_alpha * d_a_z_d_c_l_alpha_2;
+    q.cos_alpha_times_d_a_z_d_c_l_alpha_2_plus_sin_alpha_times_d_a_z_d_c_d_alpha_2 = q
+        .cos_alpha_times_d_a_z_d_c_l_alpha_2 + i.sin_alpha * q.d_a_z_d_c_d_alpha_2;
+    q.cos_alpha_times_d_a_x_d_c_d_beta_2_plus_sin_alpha_times_d_a_z_d_c_d_beta_2 = i.cos_alpha * q.d_a_x_d_c_d_beta_2
+        + i.sin_alpha * q.d_a_z_d_c_d_beta_2;
+    q.cos_alpha_times_d_a_x_d_c_d_delta_e_2_plus_sin_alpha_times_d_a_z_d_c_d_delta_e_2 = i.cos_alpha
+        * q.d_a_x_d_c_d_delta_e_2 + i.sin_alpha * q.d_a_z_d_c_d_delta_e_2;
+    q.cos_alpha_times_d_a_x_d_c_d_delta_a_2_plus_sin_alpha_times_d_a_z_d_c_d_delta_a_2 = i.cos_alpha
+        * q.d_a_x_d_c_d_delta_a_2 + i.sin_alpha * q.d_a_z_d_c_d_delta_a_2;
+    q.cos_alpha_times_d_a_x_d_c_d_delta_r_2_plus_sin_alpha_times_d_a_z_d_c_d_delta_r_2 = i.cos_alpha
+        * q.d_a_x_d_c_d_delta_r_2 + i.sin_alpha * q.d_a_z_d_c_d_delta_r_2;
     q.i_xz_b_over_inertia_reference_force_beta = p.i_xz_b_over_inertia * i.reference_force * x.beta;
     q.i_xz_b_over_inertia_reference_force_mach_beta = p.i_xz_b_over_inertia * i.reference_force * i.mach * x.beta;
     q.i_xz_b_over_inertia_reference_force_delta_a = p.i_xz_b_over_inertia * i.reference_force * u.delta_a;

@@ -28,6 +28,104 @@ ahv_core::entries! {
     }
 }
 
+/// Entries of [`jacobians_values`]: derivatives by velocity.
+#[inline(always)]
+fn jacobians_by_velocity<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft
+    state.gamma.velocity = p.inv_m
+        * (i.inv_velocity * (s.d_lift_d_velocity + i.sin_alpha * s.d_thrust_d_velocity)
+            - (i.lift + s.thrust_sin_alpha) * s.inv_velocity_2)
+        + i.cos_gamma * (i.gravity * s.inv_velocity_2 + i.inv_radius); // rad/ft
+    let d_pitching_moment_d_velocity = p.c_bar
+        * (i.reference_force * s.d_c_m_d_velocity + i.c_m * s.d_reference_force_d_velocity); // lb*s
+    state.velocity.velocity = p.inv_m * (i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity);
+    state.altitude.velocity = i.sin_gamma;
+    state.alpha.velocity = -state.gamma.velocity;
+    state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by altitude.
+#[inline(always)]
+fn jacobians_by_altitude<R: Real>(
+    state: &mut StateJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft
+    state.gamma.altitude = p.inv_m * i.inv_velocity
+        * (s.d_lift_d_altitude + i.sin_alpha * s.d_thrust_d_altitude) - i.cos_gamma
+        * (x.velocity * i.inv_radius_2 + i.inv_velocity * s.d_gravity_d_altitude); // rad/s/ft
+    let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb
+    state.velocity.altitude = p.inv_m * (s.d_thrust_d_altitude * i.cos_alpha - d_drag_d_altitude)
+        - i.sin_gamma * s.d_gravity_d_altitude;
+    state.alpha.altitude = -state.gamma.altitude;
+    state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by gamma.
+#[inline(always)]
+fn jacobians_by_gamma<R: Real>(state: &mut StateJacobianEntries<R>, x: &State<R>, i: &Intermediates<R>) {
+    state.gamma.gamma = (i.gravity * i.inv_velocity - x.velocity * i.inv_radius) * i.sin_gamma; // 1/s
+    state.velocity.gamma = -i.cos_gamma * i.gravity;
+    state.altitude.gamma = x.velocity * i.cos_gamma;
+    state.alpha.gamma = -state.gamma.gamma;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by alpha.
+#[inline(always)]
+fn jacobians_by_alpha<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/rad
+    state.gamma.alpha = p.inv_m * i.inv_velocity
+        * (i.thrust * i.cos_alpha + i.reference_force * p.c_l_alpha); // 1/s
+    let d_pitching_moment_d_alpha = i.reference_force * p.c_bar * s.d_c_m_d_alpha; // ft*lb/rad
+    state.velocity.alpha = -p.inv_m * (s.thrust_sin_alpha + d_drag_d_alpha);
+    state.alpha.alpha = -state.gamma.alpha;
+    state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by beta.
+#[inline(always)]
+fn jacobians_by_beta<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    state.gamma.beta = i.sin_alpha * p.inv_m * i.inv_velocity * s.d_thrust_d_beta; // rad/s
+    state.velocity.beta = i.cos_alpha * p.inv_m * s.d_thrust_d_beta;
+    state.alpha.beta = -state.gamma.beta;
+    state.beta_rate.beta = p.minus_omega_2;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by pitch_rate.
+#[inline(always)]
+fn jacobians_by_pitch_rate<R: Real>(
+    state: &mut StateJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar * s.d_c_m_d_pitch_rate; // ft*lb*s/rad
+    state.alpha.pitch_rate = R::ONE;
+    state.pitch_rate.pitch_rate = d_pitching_moment_d_pitch_rate * p.inv_i_yy;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by beta_rate.
+#[inline(always)]
+fn jacobians_by_beta_rate<R: Real>(state: &mut StateJacobianEntries<R>, p: &Prepared<R>) {
+    state.beta.beta_rate = R::ONE;
+    state.beta_rate.beta_rate = p.minus_two_zeta_omega;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by delta_e.
+#[inline(always)]
+fn jacobians_by_delta_e<R: Real>(input: &mut InputJacobianEntries<R>, p: &Prepared<R>, i: &Intermediates<R>) {
+    let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_tail; // ft*lb/rad
+    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy;
+}
+
+/// Entries of [`jacobians_values`]: derivatives by beta_command.
+#[inline(always)]
+fn jacobians_by_beta_command<R: Real>(input: &mut InputJacobianEntries<R>, p: &Prepared<R>) {
+    input.beta_rate.beta_command = p.omega_2;
+}
+
 /// [`jacobians_values`] where its stages are computed already.
 #[inline(always)]
 pub fn jacobians_values_from<R: Real>(
@@ -35,63 +133,15 @@ pub fn jacobians_values_from<R: Real>(
 ) -> (StateJacobianEntries<R>, InputJacobianEntries<R>) {
     let mut state = StateJacobianEntries::splat(R::ZERO);
     let mut input = InputJacobianEntries::splat(R::ZERO);
-
-    // Derivatives with respect to velocity
-    let d_drag_d_velocity = i.c_d * s.d_reference_force_d_velocity; // lb*s/ft
-    state.gamma.velocity =
-        p.inv_m * (s.d_lift_d_velocity * i.inv_velocity - (i.lift + s.thrust_sin_alpha) * s.inv_velocity_2)
-        + i.cos_gamma * (i.gravity * s.inv_velocity_2 + i.inv_radius)
-        + s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_velocity; // rad/ft
-    let d_pitching_moment_d_velocity = p.c_bar
-        * (i.reference_force * s.d_c_m_d_velocity + i.c_m * s.d_reference_force_d_velocity); // lb*s
-
-    // Derivatives with respect to altitude
-    let d_drag_d_altitude = i.c_d * s.d_reference_force_d_altitude; // lb/ft
-    state.gamma.altitude = s.slope_of_gamma_rate_in_radius
-        + s.slope_of_gamma_rate_in_gravity * s.d_gravity_d_altitude
-        + s.d_lift_d_altitude * p.inv_m * i.inv_velocity
-        + s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_altitude; // rad/s/ft
-    let d_pitching_moment_d_altitude = i.c_m * p.c_bar * s.d_reference_force_d_altitude; // lb
-
-    // Derivatives with respect to gamma
-    state.gamma.gamma = (i.gravity * i.inv_velocity - x.velocity * i.inv_radius) * i.sin_gamma; // 1/s
-
-    // Derivatives with respect to alpha
-    let d_drag_d_alpha = i.reference_force * s.d_c_d_d_alpha; // lb/rad
-    state.gamma.alpha = p.inv_m * i.inv_velocity
-        * (i.thrust * i.cos_alpha + i.reference_force * p.c_l_alpha); // 1/s
-    let d_pitching_moment_d_alpha = i.reference_force * p.c_bar * s.d_c_m_d_alpha; // ft*lb/rad
-
-    // Derivatives with respect to pitch_rate
-    let d_pitching_moment_d_pitch_rate = i.reference_force * p.c_bar * s.d_c_m_d_pitch_rate; // ft*lb*s/rad
-
-    // Derivatives with respect to delta_e
-    let d_pitching_moment_d_delta_e = i.reference_force * p.c_bar_c_m_tail; // ft*lb/rad
-
-    state.velocity.velocity = p.inv_m * (i.cos_alpha * s.d_thrust_d_velocity - d_drag_d_velocity);
-    state.velocity.altitude = p.inv_m * (i.cos_alpha * s.d_thrust_d_altitude - d_drag_d_altitude)
-        - i.sin_gamma * s.d_gravity_d_altitude;
-    state.velocity.gamma = -i.cos_gamma * i.gravity;
-    state.velocity.alpha = -p.inv_m * (s.thrust_sin_alpha + d_drag_d_alpha);
-    state.velocity.beta = i.cos_alpha * p.inv_m * s.d_thrust_d_beta;
-    state.altitude.velocity = i.sin_gamma;
-    state.altitude.gamma = x.velocity * i.cos_gamma;
-    state.gamma.beta = s.d_gamma_rate_d_beta;
-    state.alpha.velocity = -state.gamma.velocity;
-    state.alpha.altitude = -state.gamma.altitude;
-    state.alpha.gamma = -state.gamma.gamma;
-    state.alpha.alpha = -state.gamma.alpha;
-    state.alpha.pitch_rate = R::ONE;
-    state.alpha.beta = -s.d_gamma_rate_d_beta;
-    state.pitch_rate.velocity = d_pitching_moment_d_velocity * p.inv_i_yy;
-    state.pitch_rate.altitude = d_pitching_moment_d_altitude * p.inv_i_yy;
-    state.pitch_rate.alpha = d_pitching_moment_d_alpha * p.inv_i_yy;
-    state.pitch_rate.pitch_rate = d_pitching_moment_d_pitch_rate * p.inv_i_yy;
-    state.beta.beta_rate = R::ONE;
-    state.beta_rate.beta = p.minus_omega_2;
-    state.beta_rate.beta_rate = p.minus_two_zeta_omega;
-    input.pitch_rate.delta_e = d_pitching_moment_d_delta_e * p.inv_i_yy;
-    input.beta_rate.beta_command = p.omega_2;
+    jacobians_by_velocity(&mut state, p, i, s);
+    jacobians_by_altitude(&mut state, x, p, i, s);
+    jacobians_by_gamma(&mut state, x, i);
+    jacobians_by_alpha(&mut state, p, i, s);
+    jacobians_by_beta(&mut state, p, i, s);
+    jacobians_by_pitch_rate(&mut state, p, i, s);
+    jacobians_by_beta_rate(&mut state, p);
+    jacobians_by_delta_e(&mut input, p, i);
+    jacobians_by_beta_command(&mut input, p);
     (state, input)
 }
 
@@ -99,7 +149,7 @@ pub fn jacobians_values_from<R: Real>(
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 139 operations: 31 additions, 100 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+/// 138 operations: 31 additions, 99 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -121,7 +171,7 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
 ///
-/// 157 operations: 37 additions, 112 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+/// 156 operations: 37 additions, 111 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

@@ -2,7 +2,7 @@
 
 //! Functions of WINGED_CONE. Units are foot, slug, second and radian.
 
-use super::{Input, ParameterJacobian, Parameters, Prepared, State, intermediates, slopes};
+use super::{Input, Intermediates, ParameterJacobian, Parameters, Prepared, Slopes, State, intermediates, slopes};
 use ahv_core::Real;
 
 ahv_core::entries! {
@@ -19,34 +19,40 @@ ahv_core::entries! {
     }
 }
 
-/// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (4).
-///
-/// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 178 operations: 23 additions, 147 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+/// Entries of [`parameter_jacobian_values`]: derivatives by vehicle.
 #[inline(always)]
-pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
-    let i = intermediates(x, u, p);
-    let s = slopes(x, u, p, &i);
-    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
-
-    // Derivatives with respect to parameters
+fn parameter_jacobian_by_vehicle<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     parameter.gamma.m = -(i.lift + s.thrust_sin_alpha) * p.inv_m_2 * i.inv_velocity; // rad/s/slug
-    parameter.gamma.s = i.dynamic_pressure
-        * (i.c_l * p.inv_m * i.inv_velocity
-            + s.slope_of_gamma_rate_in_thrust * i.thrust_coefficient); // rad/s/ft^2
+    parameter.gamma.s = i.dynamic_pressure * p.inv_m * i.inv_velocity
+        * (i.c_l + i.sin_alpha * i.thrust_coefficient); // rad/s/ft^2
     let d_pitching_moment_d_c_bar = i.reference_force
         * (i.c_m
             + p.half_c_bar
                 * i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
                 * x.pitch_rate * i.inv_velocity); // lb
+    parameter.velocity.m = -(i.thrust * i.cos_alpha - i.drag) * p.inv_m_2;
+    parameter.velocity.s = p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.thrust_coefficient - i.c_d);
+    parameter.alpha.m = -parameter.gamma.m;
+    parameter.alpha.s = -parameter.gamma.s;
+    parameter.pitch_rate.i_yy = -i.pitching_moment * p.inv_i_yy_2;
+    parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
+    parameter.pitch_rate.c_bar = d_pitching_moment_d_c_bar * p.inv_i_yy;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by environment.
+#[inline(always)]
+fn parameter_jacobian_by_environment<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     let d_dynamic_pressure_d_rho_0 = R::HALF * i.velocity_2 * i.exp_minus_altitude_over_h_s; // lb*ft/slug
     let d_reference_force_d_rho_0 = p.s * d_dynamic_pressure_d_rho_0; // lb*ft^3/slug
     let d_drag_d_rho_0 = i.c_d * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_thrust_d_rho_0 = i.thrust_coefficient * d_reference_force_d_rho_0; // lb*ft^3/slug
     let d_lift_d_rho_0 = i.c_l * d_reference_force_d_rho_0; // lb*ft^3/slug
-    parameter.gamma.rho_0 = d_lift_d_rho_0 * p.inv_m * i.inv_velocity
-        + s.slope_of_gamma_rate_in_thrust * d_thrust_d_rho_0; // rad*ft^3/s/slug
+    parameter.gamma.rho_0 = p.inv_m * i.inv_velocity
+        * (d_lift_d_rho_0 + i.sin_alpha * d_thrust_d_rho_0); // rad*ft^3/s/slug
     let d_pitching_moment_d_rho_0 = i.c_m * p.c_bar * d_reference_force_d_rho_0; // ft^4*lb/slug
     let d_density_d_h_s = i.density * x.altitude * p.inv_h_s_2; // slug/ft^4
     let d_dynamic_pressure_d_h_s = R::HALF * i.velocity_2 * d_density_d_h_s; // lb/ft^3
@@ -54,53 +60,75 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     let d_drag_d_h_s = i.c_d * d_reference_force_d_h_s; // lb/ft
     let d_thrust_d_h_s = i.thrust_coefficient * d_reference_force_d_h_s; // lb/ft
     let d_lift_d_h_s = i.c_l * d_reference_force_d_h_s; // lb/ft
-    parameter.gamma.h_s = d_lift_d_h_s * p.inv_m * i.inv_velocity
-        + s.slope_of_gamma_rate_in_thrust * d_thrust_d_h_s; // rad/s/ft
+    parameter.gamma.h_s = p.inv_m * i.inv_velocity * (d_lift_d_h_s + i.sin_alpha * d_thrust_d_h_s); // rad/s/ft
     let d_pitching_moment_d_h_s = i.c_m * p.c_bar * d_reference_force_d_h_s; // lb
-    parameter.gamma.r_e = s.slope_of_gamma_rate_in_radius
-        - R::TWO * s.slope_of_gamma_rate_in_gravity * i.gravity * i.inv_radius; // rad/s/ft
-
-    parameter.velocity.m = -(i.thrust * i.cos_alpha - i.drag) * p.inv_m_2;
-    parameter.velocity.s = p.inv_m * i.dynamic_pressure * (i.cos_alpha * i.thrust_coefficient - i.c_d);
+    parameter.gamma.r_e = i.cos_gamma
+        * (R::TWO * i.inv_velocity * i.gravity * i.inv_radius - x.velocity * i.inv_radius_2); // rad/s/ft
+    parameter.gamma.mu = -i.cos_gamma * i.inv_velocity * i.inv_radius_2; // rad*s/ft^3
     parameter.velocity.rho_0 = p.inv_m * (i.cos_alpha * d_thrust_d_rho_0 - d_drag_d_rho_0);
     parameter.velocity.h_s = p.inv_m * (i.cos_alpha * d_thrust_d_h_s - d_drag_d_h_s);
     parameter.velocity.r_e = R::TWO * i.sin_gamma * i.gravity * i.inv_radius;
     parameter.velocity.mu = -i.sin_gamma * i.inv_radius_2;
+    parameter.alpha.rho_0 = -parameter.gamma.rho_0;
+    parameter.alpha.h_s = -parameter.gamma.h_s;
+    parameter.alpha.r_e = -parameter.gamma.r_e;
+    parameter.alpha.mu = -parameter.gamma.mu;
+    parameter.pitch_rate.rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy;
+    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_d.
+#[inline(always)]
+fn parameter_jacobian_by_c_d<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.velocity.c_d_alpha_2 = -i.reference_force * i.alpha_2 * p.inv_m;
     parameter.velocity.c_d_alpha = -i.reference_force * x.alpha * p.inv_m;
     parameter.velocity.c_d_0 = -i.reference_force * p.inv_m;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_t.
+#[inline(always)]
+fn parameter_jacobian_by_c_t<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    parameter.gamma.c_t_beta = i.sin_alpha * p.inv_m * i.inv_velocity * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t * x.beta; // rad/s
     parameter.velocity.c_t_beta = i.cos_alpha * p.inv_m * i.reference_force * s.slope_of_thrust_coefficient_in_c_t
         * x.beta;
+    parameter.alpha.c_t_beta = -parameter.gamma.c_t_beta;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_t_high.
+#[inline(always)]
+fn parameter_jacobian_by_c_t_high<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
+    parameter.gamma.c_t_high_0 = i.sin_alpha * p.inv_m * i.inv_velocity * i.reference_force
+        * s.slope_of_thrust_coefficient_in_c_t_high; // rad/s
+    parameter.gamma.c_t_high_beta = parameter.gamma.c_t_high_0 * x.beta; // rad/s
     parameter.velocity.c_t_high_0 = i.cos_alpha * p.inv_m * i.reference_force
         * s.slope_of_thrust_coefficient_in_c_t_high;
     parameter.velocity.c_t_high_beta = i.cos_alpha * p.inv_m * i.reference_force
         * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
-    parameter.gamma.mu = s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
+    parameter.alpha.c_t_high_0 = -parameter.gamma.c_t_high_0;
+    parameter.alpha.c_t_high_beta = -parameter.gamma.c_t_high_beta;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_l.
+#[inline(always)]
+fn parameter_jacobian_by_c_l<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.gamma.c_l_alpha = i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
-    parameter.gamma.c_t_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t * x.beta;
-    parameter.gamma.c_t_high_0 = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high;
-    parameter.gamma.c_t_high_beta = s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
-    parameter.alpha.m = -parameter.gamma.m;
-    parameter.alpha.s = -parameter.gamma.s;
-    parameter.alpha.rho_0 = -parameter.gamma.rho_0;
-    parameter.alpha.h_s = -parameter.gamma.h_s;
-    parameter.alpha.r_e = -parameter.gamma.r_e;
-    parameter.alpha.mu = -s.slope_of_gamma_rate_in_gravity * i.inv_radius_2;
     parameter.alpha.c_l_alpha = -i.reference_force * x.alpha * p.inv_m * i.inv_velocity;
-    parameter.alpha.c_t_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t * x.beta;
-    parameter.alpha.c_t_high_0 = -s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high;
-    parameter.alpha.c_t_high_beta = -s.slope_of_gamma_rate_in_thrust * i.reference_force
-        * s.slope_of_thrust_coefficient_in_c_t_high * x.beta;
-    parameter.pitch_rate.i_yy = -i.pitching_moment * p.inv_i_yy_2;
-    parameter.pitch_rate.s = i.c_m * p.c_bar_over_i_yy * i.dynamic_pressure;
-    parameter.pitch_rate.c_bar = d_pitching_moment_d_c_bar * p.inv_i_yy;
-    parameter.pitch_rate.rho_0 = d_pitching_moment_d_rho_0 * p.inv_i_yy;
-    parameter.pitch_rate.h_s = d_pitching_moment_d_h_s * p.inv_i_yy;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by c_m.
+#[inline(always)]
+fn parameter_jacobian_by_c_m<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>,
+) {
     parameter.pitch_rate.c_m_alpha_2 = i.reference_force * p.c_bar_over_i_yy * i.alpha_2;
     parameter.pitch_rate.c_m_alpha = i.reference_force * p.c_bar_over_i_yy * x.alpha;
     parameter.pitch_rate.c_m_0 = i.reference_force * p.c_bar_over_i_yy;
@@ -108,8 +136,35 @@ pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepar
     parameter.pitch_rate.c_m_alpha_q_hat = i.reference_force * p.c_bar_over_i_yy * i.q_hat * x.alpha;
     parameter.pitch_rate.c_m_q_hat = i.reference_force * p.c_bar_over_i_yy * i.q_hat;
     parameter.pitch_rate.c_m_tail = i.reference_force * p.c_bar_over_i_yy * i.tail;
+}
+
+/// Entries of [`parameter_jacobian_values`]: derivatives by engine.
+#[inline(always)]
+fn parameter_jacobian_by_engine<R: Real>(
+    parameter: &mut ParameterJacobianEntries<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>,
+) {
     parameter.beta_rate.zeta = x.beta_rate * p.minus_two_omega;
     parameter.beta_rate.omega = (u.beta_command - x.beta) * p.two_omega - x.beta_rate * p.two_zeta;
+}
+
+/// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (4).
+///
+/// The structurally non-zero entries alone, in the order of the pattern.
+///
+/// 169 operations: 23 additions, 138 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
+#[inline(always)]
+pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
+    let i = intermediates(x, u, p);
+    let s = slopes(x, u, p, &i);
+    let mut parameter = ParameterJacobianEntries::splat(R::ZERO);
+    parameter_jacobian_by_vehicle(&mut parameter, x, p, &i, &s);
+    parameter_jacobian_by_environment(&mut parameter, x, p, &i);
+    parameter_jacobian_by_c_d(&mut parameter, x, p, &i);
+    parameter_jacobian_by_c_t(&mut parameter, x, p, &i, &s);
+    parameter_jacobian_by_c_t_high(&mut parameter, x, p, &i, &s);
+    parameter_jacobian_by_c_l(&mut parameter, x, p, &i);
+    parameter_jacobian_by_c_m(&mut parameter, x, p, &i);
+    parameter_jacobian_by_engine(&mut parameter, x, u, p);
     parameter
 }
 

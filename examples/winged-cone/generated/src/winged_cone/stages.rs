@@ -96,12 +96,6 @@ ahv_core::record! {
     /// Quantities of the Jacobians that other functions need. A field without a description is what its name
     /// says: its formula and unit stand in [`slopes`].
     pub struct Slopes<R> {
-        /// Partial derivative of turn rate with respect to thrust, rad/s/lb.
-        slope_of_gamma_rate_in_thrust,
-        /// Partial derivative of turn rate with respect to distance to the centre of the Earth, rad/s/ft.
-        slope_of_gamma_rate_in_radius,
-        /// Partial derivative of turn rate with respect to acceleration of gravity, rad*s/ft.
-        slope_of_gamma_rate_in_gravity,
         /// Partial derivative of thrust coefficient with respect to thrust coefficient below beta = 1, dimensionless.
         slope_of_thrust_coefficient_in_c_t,
         /// Partial derivative of thrust coefficient with respect to thrust coefficient from beta = 1 on,
@@ -110,7 +104,7 @@ ahv_core::record! {
         d_reference_force_d_velocity, d_thrust_d_velocity, d_lift_d_velocity, thrust_sin_alpha, inv_velocity_2,
         d_c_m_d_velocity, d_gravity_d_altitude, d_density_d_altitude, d_reference_force_d_altitude, d_thrust_d_altitude,
         d_lift_d_altitude, d_c_d_d_alpha, two_c_m_alpha_2_q_hat_alpha_plus_c_m_alpha_q_hat, d_c_m_d_alpha,
-        d_c_m_d_pitch_rate, d_thrust_coefficient_d_beta, d_thrust_d_beta, d_gamma_rate_d_beta,
+        d_c_m_d_pitch_rate, d_thrust_coefficient_d_beta, d_thrust_d_beta,
     }
 }
 
@@ -124,7 +118,6 @@ pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Interme
     s.d_reference_force_d_velocity = p.s * d_dynamic_pressure_d_velocity; // lb*s/ft
     s.d_thrust_d_velocity = i.thrust_coefficient * s.d_reference_force_d_velocity; // lb*s/ft
     s.d_lift_d_velocity = i.c_l * s.d_reference_force_d_velocity; // lb*s/ft
-    s.slope_of_gamma_rate_in_thrust = i.sin_alpha * p.inv_m * i.inv_velocity; // rad/s/lb
     s.d_c_m_d_velocity = -i.c_m_alpha_2_q_hat_alpha_2_plus_c_m_alpha_q_hat_alpha_plus_c_m_q_hat
         * i.q_hat * i.inv_velocity; // s/ft
 
@@ -134,8 +127,6 @@ pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Interme
     let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // lb/ft^3
     s.d_reference_force_d_altitude = p.s * d_dynamic_pressure_d_altitude; // lb/ft
     s.d_thrust_d_altitude = i.thrust_coefficient * s.d_reference_force_d_altitude; // lb/ft
-    s.slope_of_gamma_rate_in_radius = -i.cos_gamma * x.velocity * i.inv_radius_2; // rad/s/ft
-    s.slope_of_gamma_rate_in_gravity = -i.cos_gamma * i.inv_velocity; // rad*s/ft
     s.d_lift_d_altitude = i.c_l * s.d_reference_force_d_altitude; // lb/ft
 
     // Derivatives with respect to alpha
@@ -155,7 +146,6 @@ pub fn slopes<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Interme
     s.d_thrust_coefficient_d_beta = s.slope_of_thrust_coefficient_in_c_t * p.c_t_beta
         + s.slope_of_thrust_coefficient_in_c_t_high * p.c_t_high_beta;
     s.d_thrust_d_beta = i.reference_force * s.d_thrust_coefficient_d_beta; // lb
-    s.d_gamma_rate_d_beta = s.slope_of_gamma_rate_in_thrust * s.d_thrust_d_beta; // rad/s
 
     // Further values
     s.thrust_sin_alpha = i.thrust * i.sin_alpha;
