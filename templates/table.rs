@@ -4,6 +4,7 @@ use super::nominal::{UNIT_SYSTEM, {% if !document.validity.is_empty() %}VALIDITY
 use ahv_core::{
     {%- if !document.choices.is_empty() %}Choice, ChoiceOption, {% endif -%}
     Entry,
+    {%- if !document.fits.is_empty() %} Fit, FitVariable,{% endif %}
     {%- if !document.validity.is_empty() %} Interval,{% endif -%}
     {%- if !document.rules.is_empty() %} Rule, Sign,{% endif %} Table
     {%- if !document.rules.is_empty() %}, Term{% endif -%}
@@ -38,6 +39,15 @@ pub const TABLE: Table = Table {
     validity: &[
 {%- for v in document.validity %}
         Interval::new("{{ v.name }}", {{ v.unit|text }}, VALIDITY.{{ v.name }}, &{{ bounded(v.name)|texts }}){{ only_for(v.models) }},
+{%- endfor %}
+    ],
+    fits: &[
+{%- for fit in document.fits %}
+        Fit::new({{ fit.section|text }}, {{ fit.unit|text }}, {{ fit.doc|text }}, &[
+            {%- for v in fit.variables %}{% match v.interval %}
+                {%- when Some(interval) %}FitVariable::new({{ v.name|text }}, {{ v.unit|text }}, {{ interval|text }}), {% when None %}FitVariable::unbounded({{ v.name|text }}, {{ v.unit|text }}), {% endmatch %}
+            {%- endfor -%}
+        ], &{{ fit.affine|texts }}){{ only_for(fit.models) }},
 {%- endfor %}
     ],
     rules: &[

@@ -17,6 +17,10 @@ namespace {
 constexpr int STATES = 8;
 constexpr int CHANNELS = 6;
 constexpr int MODES = 3;
+constexpr int INPUTS = 3;
+// Of each input: whether it moves, its bounds, then its gains.
+constexpr int ROW = 3 + STATES;
+constexpr int ALPHA = 3;
 // Sums of eta, its square, chi and its square.
 constexpr int SUMS = 4;
 
@@ -56,6 +60,42 @@ extern "C" void monte_carlo(const double *start, const double *u, const double *
                 x = after;
             }
             std::copy(x.begin(), x.end(), ends + static_cast<std::ptrdiff_t>(member) * STATES);
+        }
+    });
+}
+
+// Flights of SDCOM by the Euler-Maruyama method under u = input - gain (x - start), held over a step, through lags with limits
+// of position and of `rate`; `law` holds a row an input. The increments of a step are each the sum of `parts` normal numbers.
+// `ends` takes the angles of attack.
+extern "C" void closed_loop(const double *start, const double *u, const double *p, const double *law, double bandwidth,
+                            double rate, double dt, int steps, int parts, int members, int threads, std::uint64_t seed,
+                            double *ends) {
+    const double share = -std::expm1(-bandwidth * dt), most = rate * dt;
+    in_parts(threads, members, seed, [=](int, int first, int end, std::mt19937_64 &random) {
+        std::normal_distribution<double> normal(0.0, std::sqrt(dt / parts));
+        for (int member = first; member < end; ++member) {
+            std::array<double, STATES> x, after;
+            std::array<double, INPUTS> position;
+            std::copy(start, start + STATES, x.begin());
+            std::copy(u, u + INPUTS, position.begin());
+            for (int k = 0; k < steps; ++k) {
+                for (int input = 0; input < INPUTS; ++input) {
+                    const double *row = law + ROW * input;
+                    if (row[0] == 0.0) continue;
+                    double command = u[input];
+                    for (int state = 0; state < STATES; ++state) command -= row[3 + state] * (x[state] - start[state]);
+                    const double wanted = (std::clamp(command, row[1], row[2]) - position[input]) * share;
+                    position[input] += std::clamp(wanted, -most, most);
+                }
+                std::array<double, CHANNELS> dw{};
+                for (int part = 0; part < parts; ++part)
+                    for (double &it : dw) it += normal(random);
+                const double *arguments[] = {x.data(), position.data(), p, &dt, dw.data()};
+                double *results[] = {after.data()};
+                sdcom_euler_maruyama(arguments, results, nullptr, nullptr, 0);
+                x = after;
+            }
+            ends[member] = x[ALPHA];
         }
     });
 }

@@ -3,14 +3,14 @@
 use serde::Serialize;
 
 use crate::candidates::{LANES, PRODUCT, REFERENCE};
+use crate::found::Found;
 use crate::modes;
 use crate::monte_carlo;
 use crate::process::{self, Process};
 use crate::race::{Finish, NUMPY};
-use crate::report::Report;
 use crate::rk4;
+use crate::rounds::Spread;
 use crate::table::Table;
-use crate::timing::Spread;
 
 /// A figure that is asked for.
 #[derive(Serialize)]
@@ -58,17 +58,31 @@ const THREADS: usize = 2;
 const OF_LANES: &str = "what else runs on the core: a loop in lanes keeps its ports busy";
 const OF_RK4: &str = "one member in a turn: of the loop with two the compiler makes no faster code";
 const OF_NOISE: &str = "drift and noise increment; what normal numbers take stands below";
+const OF_INTERVAL: &str = "the same scheme and step for both: it is what a member-step takes, with the law and the actuators";
 const OF_MODES: &str =
     "normal numbers, and the sums over runs; NumPy's numbers are by SFC64, its fastest generator";
 
 /// All of them.
-pub(crate) fn all(report: &Report) -> Vec<Bar> {
-    let mut bars = kernels(report);
-    bars.extend(trajectories(&report.trajectories.finishes));
-    bars.extend(ensembles(&report.monte_carlo.finishes));
-    bars.extend(processes(report.processes.as_deref().unwrap_or_default()));
-    bars.extend(sections(&report.modes.finishes));
-    let weak = report.weak.as_ref().and_then(|it| {
+pub(crate) fn all(of: &Found) -> Vec<Bar> {
+    let mut bars = kernels(of);
+    bars.extend(trajectories(&of.trajectories.finishes));
+    bars.extend(ensembles(&of.monte_carlo.finishes));
+    bars.extend(processes(of.processes.as_deref().unwrap_or_default()));
+    let interval = of.interval.as_ref().and_then(|it| {
+        let [peer, own] = &it.finishes[..] else {
+            return None;
+        };
+        Some(Measured::in_rounds(own, peer))
+    });
+    bars.push(most(
+        "Interval of σ_α, 1 % wide, in closed loop, as a process",
+        ENSEMBLE,
+        0.05,
+        interval,
+        OF_INTERVAL,
+    ));
+    bars.extend(sections(&of.modes.finishes));
+    let weak = of.weak.as_ref().and_then(|it| {
         let (peer, own) = (it.finishes.first()?, it.finishes.last()?);
         Some(Measured::in_rounds(own, peer))
     });
@@ -81,7 +95,7 @@ pub(crate) fn all(report: &Report) -> Vec<Bar> {
     ));
     let rate = |threads| {
         found(
-            &report.monte_carlo.finishes,
+            &of.monte_carlo.finishes,
             threads,
             monte_carlo::SIDE_BY_SIDE[0],
         )
@@ -99,9 +113,9 @@ pub(crate) fn all(report: &Report) -> Vec<Bar> {
             "",
         )
     });
-    let bound = report.lane_drift().map(|it| Measured {
-        median: it.median / report.bound.nanoseconds,
-        least: it.min / report.bound.nanoseconds,
+    let bound = of.lane_drift().map(|it| Measured {
+        median: it.median / of.bound.nanoseconds,
+        least: it.min / of.bound.nanoseconds,
     });
     bars.push(most(
         "DCOM drift, in lanes",
@@ -130,10 +144,10 @@ fn most(
     }
 }
 
-fn kernels(report: &Report) -> Vec<Bar> {
+fn kernels(of: &Found) -> Vec<Bar> {
     let ratio = |function: &str, candidate: &str| {
         let timing = |candidate| {
-            let mut timings = report.timings.iter();
+            let mut timings = of.timings.iter();
             timings.find(|it| it.function == function && it.candidate == candidate)
         };
         let (own, peer) = (timing(candidate)?, timing(REFERENCE)?);

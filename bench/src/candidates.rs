@@ -8,6 +8,7 @@ use crate::commands;
 use crate::interpreted::Interpreted;
 use crate::kernel::{self, Evaluate, Kernel, Layout, Work};
 use crate::lanes;
+use crate::layout;
 use crate::setting::{Built, NATIVE, Setting, rustc};
 use crate::steppers::END;
 use crate::subject::{SUBJECTS, Subject};
@@ -130,7 +131,10 @@ fn casadi(setting: &Setting, peer: &Value) -> Result<Candidate, String> {
     let describe = |subject: &Subject| {
         let said = &peer["kernels"][subject.symbol];
         let outputs = said["outputs"].as_array().into_iter().flatten();
-        Ok((outputs.map(numbers).collect(), work(&said["work"])?))
+        Ok((
+            outputs.map(layout::numbers).collect(),
+            layout::work(&said["work"])?,
+        ))
     };
     loaded(
         REFERENCE,
@@ -141,48 +145,11 @@ fn casadi(setting: &Setting, peer: &Value) -> Result<Candidate, String> {
     )
 }
 
-fn numbers(value: &Value) -> Vec<usize> {
-    let numbers = value.as_array().into_iter().flatten();
-    numbers
-        .filter_map(Value::as_u64)
-        .map(|it| it as usize)
-        .collect()
-}
-
-/// The working memory that CasADi says a function of its C needs.
-pub(crate) fn work(said: &Value) -> Result<Work, String> {
-    let &[arguments, results, integers, reals] = &numbers(said)[..] else {
-        return Err("error: CasADi's peer.json lacks a function".to_owned());
-    };
-    Ok(Work {
-        arguments,
-        results,
-        integers,
-        reals,
-    })
-}
-
 fn own(name: &'static str, flags: &str, setting: &Setting) -> Result<Candidate, String> {
     let packages = ["ahv-bench-kernels", "ahv-models"];
     let built = setting.rust(&setting.root.join("bench"), flags, &setting.out, &packages)?;
-    let own = |subject: &Subject| Ok((own_layout(subject), Work::default()));
+    let own = |subject: &Subject| Ok((layout::own_layout(subject), Work::default()));
     loaded(name, rustc(flags), &built, Some("prepare"), own)
-}
-
-/// The outputs of the product: Jacobians have the entries that are not 0 by structure.
-fn own_layout(subject: &Subject) -> Layout {
-    let dense = |(rows, columns): &(usize, usize)| (0..rows * columns).collect();
-    let mut outputs: Layout = subject.shapes.iter().map(dense).collect();
-    for (output, pattern) in outputs.iter_mut().skip(1).zip(subject.patterns) {
-        let [_, columns] = pattern.shape;
-        *output = pattern.at.iter().map(|[i, j]| i * columns + j).collect();
-    }
-    outputs
-}
-
-/// Where the outputs of the product stand within all outputs.
-pub(crate) fn layout(subject: &Subject) -> Layout {
-    shifted(own_layout(subject), subject)
 }
 
 /// The product's functions for members side by side.
@@ -242,7 +209,7 @@ fn loaded(
     let kernel = |subject: &Subject| -> Result<Box<dyn Evaluate>, String> {
         let (layout, work) = describe(subject)?;
         let prepare = prepare.map(|it| format!("{}_{it}", subject.model.name()));
-        let layout = shifted(layout, subject);
+        let layout = layout::shifted(layout, subject);
         let kernel = Kernel::new(library, subject, prepare.as_deref(), layout, work)?;
         Ok(Box::new(kernel))
     };
@@ -252,16 +219,4 @@ fn loaded(
         compiled: built.seconds,
         kernels: SUBJECTS.iter().map(kernel).collect::<Result<_, _>>()?,
     })
-}
-
-/// Positions within each output become positions within all outputs, one after the other.
-fn shifted(layout: Layout, subject: &Subject) -> Layout {
-    let mut start = 0;
-    let outputs = layout.into_iter().zip(subject.shapes);
-    let shift = |(positions, (rows, columns)): (Vec<usize>, &(usize, usize))| {
-        let all = positions.into_iter().map(|it| start + it).collect();
-        start += rows * columns;
-        all
-    };
-    outputs.map(shift).collect()
 }

@@ -9,9 +9,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::commands;
-use crate::timing::Spread;
+use crate::rounds::Spread;
 
-const RUNS: u32 = 7;
+const RUNS: u32 = 5;
 
 /// Seconds of `generate` on all tables, into an empty folder.
 #[derive(Serialize)]

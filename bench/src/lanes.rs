@@ -9,8 +9,8 @@ use ahv_bench_kernels::lanes::{
 use ahv_core::{Branchless, Lanes, Vector};
 use ahv_models::{dcom, sdcom};
 
-use crate::candidates::layout;
 use crate::kernel::{Evaluate, PASSES};
+use crate::layout;
 use crate::points::Points;
 use crate::subject::SUBJECTS;
 
@@ -113,7 +113,7 @@ macro_rules! kernel {
             model: $module::Model::new(&$module::NOMINAL).map_ref(|&it| Packed::splat(it)),
             packed: None,
             results: <$results as Side>::empty(),
-            positions: layout(&$subject).concat(),
+            positions: layout::of_product(&$subject).concat(),
             dense: $subject.dense(),
         })
     };

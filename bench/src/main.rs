@@ -8,10 +8,13 @@ mod candidates;
 mod commands;
 mod compilation;
 mod ensembles;
+mod found;
 mod generation;
 mod interpreted;
+mod interval;
 mod kernel;
 mod lanes;
+mod layout;
 mod machine;
 mod modes;
 mod moments;
@@ -24,6 +27,7 @@ mod process;
 mod race;
 mod report;
 mod rk4;
+mod rounds;
 mod service;
 mod setting;
 mod steppers;
@@ -41,6 +45,7 @@ use serde_json::json;
 
 use arrays::Arrays;
 use ensembles::Ensembles;
+use found::Found;
 use points::Points;
 use report::Report;
 use setting::Setting;
@@ -71,7 +76,7 @@ struct Args {
 /// Random points of the box of validity.
 const POINTS: usize = 1000;
 /// Rounds of kernels, of steppers and solvers, and of ensembles: with peers and without.
-const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 11.0], [200.0, 5.0, 5.0]];
+const ROUNDS: [[f64; 3]; 2] = [[1000.0, 11.0, 7.0], [200.0, 5.0, 5.0]];
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
@@ -100,7 +105,7 @@ fn run(args: &Args) -> Result<(), String> {
         let folder = if documented { root() } else { &setting.out };
         let files = [
             ("docs/benchmarks.md", report.markdown()),
-            (picture::PATH, picture::draw(&report)?),
+            (picture::PATH, picture::draw(&report.found)?),
         ];
         for (path, text) in files {
             let path = folder.join(path);
@@ -144,6 +149,9 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     let modes = modes::measure(ensembles, arrays.as_ref(), races)?;
     let process = |program: &PathBuf| process::measure(setting, program, &problem());
     let processes = args.peers.as_ref().map(process).transpose()?;
+    let interval =
+        |program: &PathBuf| interval::measure(setting, program, ensembles, races.div_ceil(2));
+    let interval = args.peers.as_ref().map(interval).transpose()?;
     let weak = setting.peers.then(|| weak::measure(races)).transpose()?;
     let groups = [
         ("RK4 of DCOM", &trajectories.finishes),
@@ -152,7 +160,7 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
     ];
     let compilation = compilation::all(&candidates, &ensembles, &groups);
     let generate = |program: &PathBuf| generation::measure(program, &setting.out);
-    let mut report = Report {
+    Ok(Report::of(Found {
         machine: machine::describe(setting, &peers)?,
         compilation: setting.peers.then_some(compilation),
         generation: args.peers.as_ref().map(generate).transpose()?,
@@ -165,13 +173,11 @@ fn measure(setting: &Setting, args: &Args) -> Result<Report, String> {
         trajectories,
         monte_carlo,
         processes,
+        interval,
         modes,
         weak,
         bound: ports::measure(&setting.root)?,
-        bars: Vec::new(),
-    };
-    report.bars = bars::all(&report);
-    Ok(report)
+    }))
 }
 
 /// What the peers in Python are told.

@@ -84,7 +84,7 @@ fn pool(turns: &[Vec<f64>], members: f64) -> Vec<(f64, f64)> {
 mod tests {
     use super::{check, of_members, of_sums, pool};
     use crate::race::Finish;
-    use crate::timing::Spread;
+    use crate::rounds::Spread;
 
     const VALUES: [[f64; 1]; 6] = [[1.0], [4.0], [-2.0], [0.5], [3.0], [-1.5]];
 

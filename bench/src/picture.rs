@@ -2,8 +2,8 @@
 
 use ahv_plot::{Axis, Colour, Figure, Layer, Mark, Panel, Shape};
 
+use crate::found::Found;
 use crate::race::Finish;
-use crate::report::Report;
 use crate::subject::SUBJECTS;
 
 /// Where it lies in the repository.
@@ -22,10 +22,10 @@ type Row = (String, [f64; 3]);
 ///
 /// # Errors
 /// Figures that cannot be drawn.
-pub(crate) fn draw(report: &Report) -> Result<String, String> {
+pub(crate) fn draw(found: &Found) -> Result<String, String> {
     let mut panels = Vec::new();
     for subject in &SUBJECTS {
-        let timings = report
+        let timings = found
             .timings
             .iter()
             .filter(|it| it.function == subject.symbol);
@@ -37,7 +37,7 @@ pub(crate) fn draw(report: &Report) -> Result<String, String> {
         let label = "time over that of CasADi's C";
         panels.push(panel(subject.title, label, timings.map(row).collect()));
     }
-    let trajectories = &report.trajectories.finishes;
+    let trajectories = &found.trajectories.finishes;
     let ratio = |it: &Finish| {
         let ratio = it.ratio;
         let range = [ratio.lower_quartile, ratio.median, ratio.upper_quartile];
@@ -49,12 +49,12 @@ pub(crate) fn draw(report: &Report) -> Result<String, String> {
         (
             "Monte Carlo of SDCOM",
             "million member-steps per second",
-            &report.monte_carlo.finishes,
+            &found.monte_carlo.finishes,
         ),
         (
             "Section 5.1",
             "million mode-steps per second",
-            &report.modes.finishes,
+            &found.modes.finishes,
         ),
     ] {
         let row = |it: &Finish| {

@@ -9,15 +9,15 @@ use serde_json::Value;
 
 use crate::arrays::{Answer, Turn, ask_once};
 use crate::commands;
-use crate::monte_carlo::{DT, MEMBERS, STEPS};
+use crate::monte_carlo::problem::{DT, MEMBERS, STEPS};
+use crate::rounds::Spread;
 use crate::setting::Setting;
 use crate::table::Table;
-use crate::timing::Spread;
 
 /// Threads of all.
 const THREADS: usize = 2;
 /// Runs of each, taken in turns.
-const RUNS: usize = 5;
+const RUNS: usize = 3;
 
 /// Seconds of a process.
 #[derive(Serialize)]

@@ -7,8 +7,8 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::arrays::{self, Turn};
+use crate::rounds::{Measured, Spread, interleave};
 use crate::service::Service;
-use crate::timing::{Measured, Spread, interleave};
 
 /// The candidate that is not compiled.
 pub(crate) const NUMPY: &str = "NumPy";

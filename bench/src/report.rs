@@ -4,55 +4,36 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use crate::agreement::Agreement;
 use crate::bars::{self, Bar};
-use crate::candidates::LANES;
-use crate::compilation::{self, Compilation};
+use crate::compilation;
+use crate::found::Found;
 use crate::generation::Generation;
-use crate::machine::Machine;
-use crate::modes::Modes;
-use crate::monte_carlo::MonteCarlo;
+use crate::interval::Interval;
 use crate::operations::Operations;
 use crate::picture;
-use crate::ports::Bound;
-use crate::process::{self, Process};
-use crate::rk4::Trajectories;
-use crate::steppers::Steppers;
+use crate::process;
+use crate::rounds::Spread;
 use crate::subject::SUBJECTS;
 use crate::table::Table;
-use crate::timing::{Spread, Timing};
-use crate::weak::Weak;
 
 /// Seconds that `generate` may take, and those of them that emission may.
 const GENERATION_GOALS: (f64, f64) = (3.0, 0.05);
 
-/// Everything that was found.
+/// All figures, and the bars that they are compared with.
 #[derive(Serialize)]
 pub(crate) struct Report {
-    pub(crate) machine: Machine,
-    /// With peers alone.
-    pub(crate) generation: Option<Generation>,
-    /// With peers alone: without them what is there already is not compiled again.
-    pub(crate) compilation: Option<Vec<Compilation>>,
-    pub(crate) operations: Vec<Operations>,
-    pub(crate) agreement: Vec<Agreement>,
-    pub(crate) points: usize,
-    pub(crate) rounds: u32,
-    pub(crate) timings: Vec<Timing>,
-    pub(crate) steppers: Steppers,
-    pub(crate) trajectories: Trajectories,
-    pub(crate) monte_carlo: MonteCarlo,
-    /// With peers alone.
-    pub(crate) processes: Option<Vec<Process>>,
-    pub(crate) modes: Modes,
-    /// With peers alone: it takes minutes.
-    pub(crate) weak: Option<Weak>,
-    pub(crate) bound: Bound,
-    /// Of all that is above.
+    #[serde(flatten)]
+    pub(crate) found: Found,
     pub(crate) bars: Vec<Bar>,
 }
 
 impl Report {
+    /// Of all that was measured.
+    pub(crate) fn of(found: Found) -> Self {
+        let bars = bars::all(&found);
+        Self { found, bars }
+    }
+
     /// For programs.
     pub(crate) fn json(&self) -> Result<String, String> {
         let text = serde_json::to_string_pretty(self);
@@ -63,7 +44,7 @@ impl Report {
     /// For a terminal.
     pub(crate) fn text(&self) -> String {
         let mut text = String::new();
-        for (name, value) in self.machine.lines() {
+        for (name, value) in self.found.machine.lines() {
             let _ = writeln!(text, "{name:11}  {value}");
         }
         for table in self.tables() {
@@ -81,7 +62,7 @@ impl Report {
              Do not edit.\n\nTimes and their ratios vary by machine, compilers and libc, and a little from \
              run to run; counts of operations do not.\n\n## Machine\n\n",
         );
-        for (name, value) in self.machine.lines() {
+        for (name, value) in self.found.machine.lines() {
             let _ = writeln!(text, "* {name}: {value}");
         }
         let _ = writeln!(text, "\n![{}]({})", picture::CAPTION, picture::LINK);
@@ -100,30 +81,39 @@ impl Report {
         let mut tables = vec![
             bars::table(&self.bars),
             self.times(),
-            self.trajectories.table(),
+            self.found.trajectories.table(),
         ];
-        tables.extend(self.monte_carlo.tables());
-        tables.extend(self.processes.as_deref().map(process::table));
-        tables.push(self.modes.table());
-        tables.extend(self.weak.iter().flat_map(|it| [it.errors(), it.times()]));
-        let drift = self.lane_drift();
-        tables.extend(drift.map(|it| self.bound.table([it.median, it.min])));
-        tables.extend(self.steppers.tables());
-        tables.extend(self.compilation.iter().map(|it| compilation::table(it)));
+        tables.extend(self.found.monte_carlo.tables());
+        tables.extend(self.found.processes.as_deref().map(process::table));
+        tables.extend(self.found.interval.as_ref().map(Interval::table));
+        tables.push(self.found.modes.table());
+        tables.extend(
+            self.found
+                .weak
+                .iter()
+                .flat_map(|it| [it.errors(), it.times()]),
+        );
+        let drift = self.found.lane_drift();
+        tables.extend(drift.map(|it| self.found.bound.table([it.median, it.min])));
+        tables.extend(self.found.steppers.tables());
+        tables.extend(
+            self.found
+                .compilation
+                .iter()
+                .map(|it| compilation::table(it)),
+        );
         tables.push(self.counts());
-        tables.extend(self.generation.as_ref().map(generation));
+        tables.extend(self.found.generation.as_ref().map(generation));
         tables
     }
 
-    /// Time of a member's drift in lanes.
-    pub(crate) fn lane_drift(&self) -> Option<Spread> {
-        let mut timings = self.timings.iter();
-        let drift = |it: &&Timing| it.function == SUBJECTS[0].symbol && it.candidate == LANES;
-        timings.find(drift).map(|it| it.nanoseconds)
-    }
-
     fn agreed(&self) -> String {
-        let worst = self.agreement.iter().map(|it| it.worst).fold(0.0, f64::max);
+        let worst = self
+            .found
+            .agreement
+            .iter()
+            .map(|it| it.worst)
+            .fold(0.0, f64::max);
         format!(
             "All candidates agree at every point: the greatest difference is {worst:.1e} of the value or of its \
              component's root mean square."
@@ -134,6 +124,7 @@ impl Report {
         let mut rows = Vec::new();
         for subject in &SUBJECTS {
             for timing in self
+                .found
                 .timings
                 .iter()
                 .filter(|it| it.function == subject.symbol)
@@ -171,7 +162,7 @@ impl Report {
                  pass that does not count; JAX derives its Jacobians by `jacfwd`. {} rounds in which each has \
                  its turn, ratios to CasADi within each round. CasADi's C (SX, `cse`) stores the non-zeros of \
                  Jacobians; all others store dense ones.",
-                self.points, self.rounds
+                self.found.points, self.found.rounds
             ),
             columns: vec![
                 "call",
@@ -215,7 +206,7 @@ note: "As the headers of the generated functions say; CasADi's are the instructi
                 "divisions",
                 "wrenfold",
             ],
-            rows: self.operations.iter().map(row).collect(),
+            rows: self.found.operations.iter().map(row).collect(),
         }
     }
 }

@@ -5,7 +5,8 @@ use rayon::ThreadPool;
 use serde::Serialize;
 
 use crate::moments;
-use crate::monte_carlo::{DT, Flight, STATES, experiment, fly};
+use crate::monte_carlo::problem::{DT, Flight, STATES};
+use crate::monte_carlo::{experiment, fly};
 use crate::race::{Finish, Runner, race};
 use crate::table::Table;
 use crate::threads::pool;
@@ -17,7 +18,7 @@ const SPLITTING: [f64; 6] = [0.005, 0.01, 0.02, 0.04, 0.05, 0.1];
 /// Seed of the reference; the others have seeds of their own.
 const SEED: u64 = 1000;
 /// Flights of each method for its error.
-const FLIGHTS: u64 = 1 << 20;
+const FLIGHTS: u64 = 1 << 19;
 /// Flights of a turn.
 const MEMBERS: u64 = 2048;
 /// Number of threads for errors; times are of one thread.

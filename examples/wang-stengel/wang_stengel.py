@@ -1,8 +1,8 @@
 """The winged cone whose coefficients depend on the Mach number: Wang and Stengel (2000).
 
 A rigid vehicle over a spherical Earth, whose engine follows its command as a system of second order. Coefficients are
-products of curve fits in the angle of attack and in the Mach number, as they are published. Thrust is the branch below
-beta = 1, where `[validity]` ends. The table is `wang_stengel.toml`.
+products of curve fits in the angle of attack and in the Mach number, as they are published. Thrust has one factor below
+beta = 1 and another from there on. The table is `wang_stengel.toml`.
 """
 
 from ahv_generator.modelling import (
@@ -20,6 +20,7 @@ from ahv_generator.modelling import (
     Variable,
     cos,
     exp,
+    select,
     sin,
     switch,
 )
@@ -70,7 +71,12 @@ drag_mach = Quantity("drag_mach", "K_{D,M}", "1", "factor of the drag by the Mac
 thrust_mach = Quantity(
     "thrust_mach", "K_{T,M}", "1", "factor of the thrust by the Mach number", depends_on=(inverse_mach,)
 )
-thrust_beta = Quantity("thrust_beta", r"K_{T,\beta}", "1", "factor of the thrust by the throttle", depends_on=(beta,))
+thrust_beta = Quantity(
+    "thrust_beta", r"K_{T,\beta}", "1", "factor of the thrust by the throttle below 1", depends_on=(beta,)
+)
+thrust_beta_high = Quantity(
+    "thrust_beta_high", r"K_{T,\beta}^+", "1", "factor of the thrust by the throttle from 1 on", depends_on=(beta,)
+)
 moment_alpha = Quantity(
     "moment_alpha", r"K_{M,\alpha}", "1", "factor of the moment by the angle of attack", depends_on=(alpha,)
 )
@@ -106,6 +112,7 @@ family.quantities(
     drag_mach,
     thrust_mach,
     thrust_beta,
+    thrust_beta_high,
     moment_alpha,
     damping_mach,
     damping_alpha,
@@ -126,7 +133,10 @@ def define_coefficients(model: Model) -> tuple[Expr, Expr, Expr, Expr]:
         lifting = model["elevator_lifts"] * model.fit(C_L_elevator)
         lift = model.fit(C_L_alpha) * incidence + lifting * elevator
         drag = model[C_D_scale] * model.fit(drag_alpha) * model.fit(drag_mach)
-        thrust = model[C_T_scale] * model.fit(thrust_mach) * model.fit(thrust_beta)
+        by_throttle = select(model[beta] < 1, model.fit(thrust_beta), model.fit(thrust_beta_high))
+        doc = "factor of the thrust by the throttle"
+        by_throttle = model.define("thrust_throttle", by_throttle, r"K_T(\beta)", "1", doc)
+        thrust = model[C_T_scale] * model.fit(thrust_mach) * by_throttle
         by_mach = model[C_M_limit] - exp(-model[mach] / model[M_s])
         by_mach = model.define("moment_mach", by_mach, "K_{M,M}", "1", "factor of the moment by the Mach number")
         damping = model[c_bar] * Q / (2 * V) * model.fit(damping_mach) * model.fit(damping_alpha)

@@ -1,6 +1,7 @@
-"""Command line: `python -m ahv_generator derive --out DIR TABLE...` and `... evaluate`.
+"""Command line: `python -m ahv_generator derive --out DIR TABLE...`, `... describe TABLE` and `... evaluate`.
 
-`evaluate` writes CasADi's own values of a model at points that the oracle drew.
+`describe` prints what a table may hold, its IR without models. `evaluate` writes CasADi's own values of a model
+at points that the oracle drew.
 
 Exit codes: 0 done, 1 it cannot be done (standard error says why), 2 a table is at fault (its diagnostics stand on
 standard output as JSON).
@@ -13,7 +14,7 @@ import json
 import sys
 from pathlib import Path
 
-from . import reference
+from . import ir, reference
 from .derive import derive as derive_all
 from .derive import escaped
 from .diagnostics import Diagnostic, TableError
@@ -33,6 +34,8 @@ def main() -> int:
     verify.add_argument("--out", type=Path, required=True, help="folder for <model>.txt")
     verify.add_argument("--points", type=int, required=True, help="points of each model")
     verify.add_argument("tables", type=Path, nargs="+")
+    describe = commands.add_parser("describe", help="print what the family says of a table, without its models")
+    describe.add_argument("table", type=Path)
     evaluate = commands.add_parser("evaluate", help="evaluate a model at the points of an oracle file")
     evaluate.add_argument("--table", type=Path, required=True)
     evaluate.add_argument("--model", required=True, help="one of the models that the table lists")
@@ -47,6 +50,9 @@ def main() -> int:
             from .verify import verify_all
 
             print(json.dumps(verify_all(arguments.tables, arguments.points, arguments.out)))
+        elif arguments.command == "describe":
+            table = load(arguments.table)
+            print(f'{{"models": {json.dumps(table.models)}, "table": {ir.render(table, [])}}}')
         else:
             table = load(arguments.table)
             if arguments.model not in table.models:

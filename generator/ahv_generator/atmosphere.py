@@ -23,6 +23,17 @@ EXPONENTIAL = (
 _LAYERS = range(7)
 _ISOTHERMAL = (1, 4)
 
+
+def _bases_of_layers() -> list[Parameter]:
+    """The altitudes at which layers begin, each above that below."""
+    found: list[Parameter] = []
+    for i in _LAYERS[1:]:
+        doc = f"geopotential altitude of the base of layer {i}"
+        must, below = (None, found[-1]) if found else (POSITIVE, None)
+        found.append(Parameter(f"H_{i}", f"H_{i}", "ft", doc, must, below))
+    return found
+
+
 US_1976 = (
     Parameter("T_0", "T_0", "K", "air temperature at sea level", POSITIVE),
     Parameter("p_0", "p_0", "lb/ft^2", "air pressure at sea level", POSITIVE),
@@ -30,10 +41,7 @@ US_1976 = (
     Parameter("kappa_air", r"\kappa_a", "1", "ratio of the specific heats of air", POSITIVE),
     Parameter("g_0", "g_0", "ft/s^2", "acceleration of gravity of geopotential altitudes", POSITIVE),
     Parameter("r_0", "r_0", "ft", "radius of the Earth of geopotential altitudes", POSITIVE),
-    *(
-        Parameter(f"H_{i}", f"H_{i}", "ft", f"geopotential altitude of the base of layer {i}", POSITIVE)
-        for i in _LAYERS[1:]
-    ),
+    *_bases_of_layers(),
     *(
         Parameter(f"lapse_{i}", f"L_{i}", "K/ft", f"temperature gradient of layer {i}", NOT_ZERO)
         for i in _LAYERS

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from types import FrameType
 
 _LONGEST = 60
 
@@ -56,6 +58,32 @@ class FamilyError(Exception):
         self.line = line
 
 
+# So begin the names of modules that are files of families and parts.
+MODULE = "ahv_file_"
+
+
+def line_of_file() -> int:
+    """The line of the file of a family or a part that runs; 0 if none does."""
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None and not str(frame.f_globals.get("__name__")).startswith(MODULE):
+        frame = frame.f_back
+    return 0 if frame is None else frame.f_lineno
+
+
+@dataclass
+class Once:
+    """What may be stated once, and the lines on which it was."""
+
+    lines: dict[str, int] = field(default_factory=dict)
+
+    def __call__(self, what: str) -> None:
+        """Raise `FamilyError` for what is stated a second time."""
+        line = line_of_file()
+        if what in self.lines:
+            raise FamilyError(f"`{what}` is called twice, on line {self.lines[what]} and on line {line}; call it once")
+        self.lines[what] = line
+
+
 class TableError(Exception):
     """A table that cannot be used; carries every fault found in it."""
 
@@ -82,14 +110,17 @@ class Faults:
     def raise_any(self) -> None:
         """Raise `TableError` when a fault was recorded."""
         if self.found:
-            raise TableError(self.found)
+            raise TableError(list(dict.fromkeys(self.found)))
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """A help line: the nearest of the known words, or all of them."""
-    words = list(known)
-    folded = {w.lower(): w for w in words}
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """A help line: the nearest of the known words, if one is near."""
+    folded = {w.lower(): w for w in known}
     near = difflib.get_close_matches(word.lower(), folded, n=1, cutoff=0.75)
-    if near:
-        return f"did you mean `{folded[near[0]]}`?"
-    return "known here: " + ", ".join(f"`{w}`" for w in words)
+    return f"did you mean `{folded[near[0]]}`?" if near else None
+
+
+def suggestion(word: str, known: Iterable[str]) -> str | None:
+    """A help line: the nearest of the known words, or all of them; none where nothing is known."""
+    words = list(known)
+    return nearest(word, words) or ("known here: " + ", ".join(f"`{w}`" for w in words) if words else None)

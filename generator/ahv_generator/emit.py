@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 
 import casadi as ca
 
+from .derivation import Derivation
 from .diagnostics import Faults, suggestion
 from .entries import Entries
-from .model import Model
 
 SECTION, KEY = "emit", "functions"
 PATH = (SECTION, KEY)
@@ -30,7 +30,7 @@ def read(entries: Entries) -> tuple[str, ...] | None:
     return tuple(groups)
 
 
-def groups_of(model: Model) -> frozenset[str]:
+def groups_of(model: Derivation) -> frozenset[str]:
     """The groups of a model's functions."""
     return frozenset(function.group for function in model.functions)
 
@@ -52,7 +52,7 @@ def check(chosen: tuple[str, ...] | None, groups: frozenset[str], faults: Faults
         faults.value("needed-group", PATH, message, advice)
 
 
-def narrow(model: Model, chosen: tuple[str, ...] | None) -> None:
+def narrow(model: Derivation, chosen: tuple[str, ...] | None) -> None:
     """Leave out of a model the functions that a table does not list, and the quantities that only they use."""
     if chosen is None:
         return

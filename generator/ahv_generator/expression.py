@@ -29,7 +29,22 @@ _CALLS = {
     ca.OP_FMAX: "max",
 }
 
+
+def _acos(x: Tree) -> Tree:
+    # Not by asin, whose difference from a right angle has few digits near 1.
+    return ["*", 2.0, ["atan2", ["sqrt", ["-", 1.0, x]], ["sqrt", ["+", 1.0, x]]]]
+
+
+def _cosh(x: Tree) -> Tree:
+    return ["/", ["+", ["exp", x], ["exp", ["neg", x]]], 2.0]
+
+
+# Operations that are written in others.
 _SHORT: dict[int, Callable[[Tree], Tree]] = {
+    ca.OP_ACOS: _acos,
+    ca.OP_COSH: _cosh,
+    # Not by a difference of exponentials, which has few digits near 0.
+    ca.OP_SINH: lambda x: ["*", ["tanh", x], _cosh(x)],
     ca.OP_SQ: lambda x: ["pow", x, 2.0],
     ca.OP_TWICE: lambda x: ["*", 2.0, x],
     ca.OP_INV: lambda x: ["/", 1.0, x],
@@ -38,9 +53,9 @@ _SHORT: dict[int, Callable[[Tree], Tree]] = {
 _CONDITIONS = (ca.OP_LT, ca.OP_LE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
 # Known to CasADi; the IR and the emitter do not have them.
 _NOT_YET = {
-    ca.OP_ACOS: "acos",
-    ca.OP_SINH: "sinh",
-    ca.OP_COSH: "cosh",
+    ca.OP_ASINH: "asinh",
+    ca.OP_ACOSH: "acosh",
+    ca.OP_ATANH: "atanh",
     ca.OP_EQ: "==",
     ca.OP_NE: "!=",
     ca.OP_COPYSIGN: "copysign",
@@ -112,7 +127,7 @@ def _operation(op: int, expr: ca.SX) -> Tree:
 def _unavailable(op: int) -> str:
     # By the names that a family imports; `abs` is Python's.
     spelled = {"neg": "", "ln": "log", "min": "fmin", "max": "fmax"}
-    calls = [spelled.get(name, name) for name in _CALLS.values()]
+    calls = [*(spelled.get(name, name) for name in _CALLS.values()), "acos", "sinh", "cosh"]
     known = ", ".join(["+", "-", "*", "/", "**", *filter(None, calls), "select"])
     return f"`{_NOT_YET.get(op, op)}` is not available in a model; available: {known}"
 
@@ -195,27 +210,15 @@ def check_dimensions(name: str, expr: ca.SX, unit: str, known: Mapping[str, str]
     """Raise `ExpressionError` unless `expr` has the dimensions of `unit`; an angle is a pure number."""
     found = _dimensions(tree(expr), known)
     wanted = units.dimensions(unit)
-    if found is not None and not _same(found, wanted):
+    if found is not None and not units.alike(found, wanted):
         raise ExpressionError(
-            f"{name} is declared in `{unit}`, but its expression has the dimensions {_in_words(found)}"
+            f"{name} is declared in `{unit}`, but its expression has the dimensions {units.in_words(found)}"
         )
 
 
 def dimensions_of(expr: ca.SX, known: Mapping[str, str]) -> units.Dimensions:
     """The dimensions of an expression; an angle is a pure number."""
     return _dimensions(tree(expr), known) or {}
-
-
-def _in_words(found: units.Dimensions | None) -> str:
-    """Dimensions as a product of powers: `mass*length/time^2`."""
-    powers = {name.strip("[]"): power for name, power in (found or {}).items() if power}
-    above = [name if power == 1 else f"{name}^{power:g}" for name, power in powers.items() if power > 0]
-    below = [name if power == -1 else f"{name}^{-power:g}" for name, power in powers.items() if power < 0]
-    return "/".join(["*".join(above) or "1", *below])
-
-
-def _same(a: units.Dimensions, b: units.Dimensions) -> bool:
-    return all(abs(a.get(k, 0.0) - b.get(k, 0.0)) < 1e-9 for k in {*a, *b})
 
 
 def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None:
@@ -232,7 +235,7 @@ def _dimensions(node: Tree, known: Mapping[str, str]) -> units.Dimensions | None
         return _scaled(_dimensions(args[0], known), exponent)
     parts = [_dimensions(argument, known) for argument in args]
     if op in _OF_NUMBERS:
-        if parts[0] and not _same(parts[0], {}):
+        if parts[0] and not units.alike(parts[0], {}):
             raise ExpressionError(f"{op} of a quantity with dimensions: {args[0]}")
         return {}
     if op == "powr":
@@ -267,7 +270,7 @@ def _of_power(parts: list[units.Dimensions | None], exponent: Tree) -> units.Dim
     if isinstance(exponent, float):
         return _scaled(parts[0], exponent)
     for part, what in zip(parts, ("base", "exponent"), strict=True):
-        if part and not _same(part, {}):
+        if part and not units.alike(part, {}):
             raise ExpressionError(f"a power with an exponent that is no number has dimensions in its {what}")
     return {}
 
@@ -279,9 +282,9 @@ def _scaled(found: units.Dimensions | None, factor: float) -> units.Dimensions:
 def _common(left: units.Dimensions | None, right: units.Dimensions | None, op: str) -> units.Dimensions | None:
     if left is None or right is None:
         return left if right is None else right
-    if not _same(left, right):
+    if not units.alike(left, right):
         raise ExpressionError(
-            f"{_OF_TWO.get(op, 'a sum')} of unlike dimensions, {_in_words(left)} and {_in_words(right)}"
+            f"{_OF_TWO.get(op, 'a sum')} of unlike dimensions, {units.in_words(left)} and {units.in_words(right)}"
         )
     return left
 

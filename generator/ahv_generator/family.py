@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import contextlib
 import re
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from . import names, units
-from .diagnostics import FamilyError, suggestion
-from .joined import JoinedModel, joined_bases
+from .checked import checked
+from .contents import Contents
+from .diagnostics import FamilyError, line_of_file, nearest, suggestion
+from .joined import JOINED, PARTS, JoinedModel, joined_bases
 from .model import Model
 from .part import Instance
-from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_texts
-
-if TYPE_CHECKING:
-    from .table import Table
+from .polynomial import powers_of_name
+from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable, check_order, check_texts
 
 Equations = Callable[[Model], None]
 _T = TypeVar("_T")
 
 # Sections that every table may have.
-_RESERVED = ("table", "sources", "choices", "validity", "sets", "parts", "joined", "emit")
+_RESERVED = ("table", "sources", "choices", "validity", "sets", PARTS, JOINED, "emit")
 
 
 @dataclass(frozen=True)
@@ -97,12 +96,15 @@ class Family:
         self._joined: dict[str, str] = {}
         self._parts: set[str] = set()
 
+    @checked
     def parameters(self, section: str, *parameters: Parameter) -> None:
         """Numbers that a table has in the section `[section]`, in this order."""
         if section in _RESERVED or section in [q.key for q in self._all(Quantity)]:
             raise FamilyError(f"`[{section}]` has a meaning of its own; choose another section")
+        check_order(parameters, [parameter.name for parameter in self._all(Parameter)])
         self._declare(section, parameters, [parameter.name for parameter in parameters])
 
+    @checked
     def bounds(self, *variables: Variable) -> None:
         """The intervals that a table has in `[validity]`; every state and input of a model needs one.
 
@@ -110,6 +112,7 @@ class Family:
         """
         self._declare("validity", variables, [variable.name for variable in variables], "the interval")
 
+    @checked
     def choices(self, *choices: Choice) -> None:
         """What a table chooses by name in `[choices]`."""
         known = [*self._all(Choice), *choices]
@@ -118,6 +121,7 @@ class Family:
                 raise FamilyError(f"two choices have one name: {', '.join(names_of)}")
         self._declare("choices", choices, [switch.name for choice in choices for switch in choice.switches])
 
+    @checked
     def quantities(self, *quantities: Quantity) -> None:
         """Curve fits: each is a section of the table, whose keys are its monomials."""
         for quantity in quantities:
@@ -125,16 +129,38 @@ class Family:
                 raise FamilyError(f"`[{quantity.key}]` has a meaning of its own; choose another key")
         self._declare("", quantities, [quantity.key.lower() for quantity in quantities])
 
+    @checked
     def rules(self, *rules: Rule) -> None:
         """Conditions on more than one parameter, or on a coefficient; what they name is declared before."""
-        known = self._names()
-        fits = tuple(f"{quantity.key.lower()}_" for quantity in self._all(Quantity))
         for rule in rules:
             for name in rule.parameters():
-                if name not in known and not name.startswith(fits or "\0"):
-                    raise FamilyError(f"the rule `{rule.name}` names `{name}`, which no table has before this line")
+                if self._unit_of(name) is None:
+                    message = f"the rule `{rule.name}` names `{name}`, which no table has before this line"
+                    raise FamilyError(message, self._advice(name))
+            rule.check_dimensions(lambda name: self._unit_of(name) or "")
         self._declare("", rules, [])
 
+    def _unit_of(self, name: str) -> str | None:
+        """The unit of a parameter, a switch or a coefficient; None of what no table has."""
+        for parameter in self._parameters():
+            if parameter.name == name:
+                return parameter.unit
+        for quantity in self._all(Quantity):
+            own = f"{quantity.key.lower()}_"
+            powers = powers_of_name(name.removeprefix(own), quantity.variables) if name.startswith(own) else None
+            if powers is not None:
+                return quantity.unit_of(powers)
+        return None
+
+    def _advice(self, name: str) -> str:
+        """What may have been meant by a name in a rule."""
+        known = [parameter.name for parameter in self._parameters()]
+        for quantity in self._all(Quantity):
+            singles = [f"{quantity.key.lower()}_{variable}" for variable in ("0", *quantity.variables)]
+            known += [*singles, *(f"{one}_{exponent}" for one in singles[1:] for exponent in range(2, 5))]
+        return nearest(name, known) or "a coefficient is quantity and monomial in lower case, like `c_l_alpha_2`"
+
+    @checked
     @contextlib.contextmanager
     def only_for(self, *models: str) -> Iterator[None]:
         r"""What is declared inside is in the tables of these models alone.
@@ -146,12 +172,13 @@ class Family:
         {}
         """
         outer, self._only = self._only, models
-        self._conditions += [(model, _line_of_caller()) for model in models]
+        self._conditions += [(model, line_of_file()) for model in models]
         try:
             yield
         finally:
             self._only = outer
 
+    @checked
     def model(
         self,
         name: str,
@@ -179,7 +206,9 @@ class Family:
         self._check_model(name, title, equations, bases)
 
         def added(build: Equations) -> Equations:
-            self.models[name] = ModelSpec(name, title, equations, bases, build, build.__code__.co_firstlineno, audited)
+            code = getattr(build, "__code__", None)
+            line = line_of_file() if code is None else code.co_firstlineno
+            self.models[name] = ModelSpec(name, title, equations, bases, build, line, audited)
             return build
 
         return added
@@ -274,12 +303,12 @@ class Family:
             if model not in self.models:
                 raise FamilyError(f"`{model}` is not a model of the family", suggestion(model, self.models), line)
 
-    def build(self, name: str, table: Table) -> Model:
+    def build(self, name: str, table: Contents) -> Model:
         """Derive one of its models from a table."""
         spec = self.models[name]
         common = (spec.name, spec.title, spec.equations, table, dict(spec.bases))
         if spec.instances:
-            model: Model = JoinedModel(*common, instances=spec.instances)
+            model: Model = JoinedModel(*common, instances=spec.instances, of=spec.of)
         else:
             model = Model(*common)
         spec.build(model)
@@ -298,8 +327,11 @@ class Family:
 
     def _names(self) -> list[str]:
         """Names of what becomes a parameter of the generated code."""
-        switches = [switch.name for choice in self._all(Choice) for switch in choice.switches]
-        return [p.name for p in self._all(Parameter)] + switches + [q.key.lower() for q in self._all(Quantity)]
+        return [p.name for p in self._parameters()] + [q.key.lower() for q in self._all(Quantity)]
+
+    def _parameters(self) -> list[Parameter]:
+        """Parameters, and the switches of choices."""
+        return [*self._all(Parameter), *(switch for choice in self._all(Choice) for switch in choice.switches)]
 
     def _declare(
         self,
@@ -317,11 +349,3 @@ class Family:
             if name in taken or name in taking[:position]:
                 raise FamilyError(f"{what} `{name}` is used twice")
         self._declared += [_Declared(section, one, self._only) for one in declared]
-
-
-def _line_of_caller() -> int:
-    """The line of the family file that is being read."""
-    frame = sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__") in (__name__, "contextlib"):
-        frame = frame.f_back
-    return frame.f_lineno

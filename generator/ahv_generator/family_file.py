@@ -7,16 +7,18 @@ import inspect
 import os
 import sys
 import traceback
+import typing
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import NoReturn
 
-from .diagnostics import Diagnostic, FamilyError, TableError, suggestion
+from .checked import DECLARATIONS
+from .diagnostics import MODULE, Diagnostic, FamilyError, TableError, suggestion
 from .expression import ExpressionError
 from .family import Family, Outline
-from .part import Part
+from .part import Join, Part
 from .schema import Variable
 from .units import UnitError
 
@@ -40,6 +42,14 @@ class NotFoundError(Exception):
 
 
 @dataclass(frozen=True)
+class Place:
+    """A key of a table."""
+
+    table: str
+    path: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class SourceFile:
     """A file of Python: as tables and messages name it, and where it is."""
 
@@ -59,7 +69,7 @@ class SourceFile:
             text = self.path.read_bytes()
         except OSError as error:
             raise NotFoundError(f"cannot read `{self.shown}`: {error.strerror}") from error
-        module = ModuleType(f"ahv_file_{self.path.stem}")
+        module = ModuleType(f"{MODULE}{self.path.stem}")
         module.__file__ = str(self.path)
         with self.faults():
             # Dataclasses of the file look for their module there.
@@ -68,29 +78,37 @@ class SourceFile:
         return module
 
     @contextlib.contextmanager
-    def faults(self) -> Iterator[None]:
-        """Report what the family's code raises inside, at its line; what it prints goes to standard error."""
+    def faults(self, at: Place | None = None) -> Iterator[None]:
+        """Report what the file's code raises inside, at its line; what it prints goes to standard error.
+
+        What a file that comes along refuses is a fault of the table that has it do so, at a place, if there is one.
+        """
         leave, os._exit = os._exit, _refuse_exit
         try:
             with contextlib.redirect_stdout(sys.stderr):
                 yield
         except (TableError, MemoryError):
             raise
-        except (Exception, SystemExit) as error:
-            raise TableError([self._fault(error)]) from error
+        except BaseException as error:
+            raise TableError([self._fault(error, at if self.path.is_relative_to(_HERE) else None)]) from error
         finally:
             os._exit = leave
 
-    def _fault(self, error: BaseException) -> Diagnostic:
+    def _fault(self, error: BaseException, at: Place | None) -> Diagnostic:
         message, help_line = str(error), getattr(error, "help", None)
         if not isinstance(error, _OURS):
-            message = f"{type(error).__name__}: {error}"
+            message = f"{type(error).__name__}: {error}".removesuffix(": ")
+        if at is not None:
+            message = f"`{self.path.stem}` does not fit here: {message}"
+            return Diagnostic("joined", at.table, at.path, "key", message, help_line)
         frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == str(self.path)]
         line = frames[-1].lineno if frames else None
         if isinstance(error, FamilyError) and error.line is not None:
             line = error.line
         if isinstance(error, SyntaxError) and error.filename == str(self.path):
             message, line = f"SyntaxError: {error.msg}", error.lineno
+        if isinstance(error, TypeError) and any(f"'{name}'" in message for name in DECLARATIONS):
+            help_line = "in equations its symbol stands for a variable or a parameter: `model[...]`"
         if isinstance(error, ModuleNotFoundError):
             help_line = "a family is one file: files beside it are not imported"
         return Diagnostic("family", self.shown, (), "key", message, help_line, line)
@@ -121,8 +139,8 @@ class FamilyFile(SourceFile):
 class PartFile(SourceFile):
     """The file of a part."""
 
-    def part(self) -> tuple[list[str], Callable[[dict[str, Variable]], Part]]:
-        """Run the file, and return the names of what its part joins, and what makes the part of the variables joined.
+    def part(self) -> tuple[dict[str, Join], Callable[[dict[str, Variable], Place | None], Part]]:
+        """Run the file, and return what its part joins by name, and what makes the part of the variables joined.
 
         Raises:
             NotFoundError: when it cannot be read.
@@ -132,16 +150,23 @@ class PartFile(SourceFile):
         with self.faults():
             if not callable(function):
                 raise FamilyError("the file has no part; state one with a function `part`", line=1)
-            joins = list(inspect.signature(function).parameters)
+            hints = typing.get_type_hints(function, include_extras=True)
+            joins = {name: _join(hints.get(name)) for name in inspect.signature(function).parameters}
 
-        def made(joined: dict[str, Variable]) -> Part:
-            with self.faults():
+        def made(joined: dict[str, Variable], at: Place | None) -> Part:
+            with self.faults(at):
                 part = function(**joined)
                 if not isinstance(part, Part):
                     raise FamilyError("the function `part` returns no part", line=1)
             return part
 
         return joins, made
+
+
+def _join(annotation: object) -> Join:
+    """What the annotation of an argument says that it joins."""
+    said = [one for one in getattr(annotation, "__metadata__", ()) if isinstance(one, Join)]
+    return said[0] if said else Join()
 
 
 def built_in(kind: str) -> list[str]:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import casadi as ca
 
 from . import units
-from .expression import check_dimensions
+from .expression import ExpressionError, check_dimensions
+
+_NOTHING = ca.SX.nan()
 
 
 @dataclass(frozen=True)
@@ -57,15 +59,17 @@ class Graph:
 
     def define(self, name: str, expr: ca.SX, *, symbol: str, unit: str, doc: str, equation: str, section: str) -> ca.SX:
         """Name a quantity and return its symbol; its dimensions are checked against `unit`."""
+        used = self._names_in(expr)
         check_dimensions(name, expr, unit, self.units)
         result = self.leaf(name, unit)
-        self._names[name] = self._names_in(expr)
+        self._names[name] = used
         self._leaves[name] = frozenset().union(*(self._leaves[used] for used in self._names[name]))
         self.quantities[name] = Intermediate(name, symbol, self.units[name], doc, equation, section, expr)
         return result
 
     def check(self, name: str, expr: ca.SX, unit: str) -> None:
-        """Raise `ExpressionError` unless an expression has the dimensions of `unit`."""
+        """Raise `ExpressionError` unless an expression, of symbols of this model, has the dimensions of `unit`."""
+        self._names_in(expr)
         check_dimensions(name, expr, unit, self.units)
 
     def leaves_in(self, expr: ca.SX) -> frozenset[str]:
@@ -77,8 +81,13 @@ class Graph:
         return units.converted(units.basic(dimensions), self.system)
 
     def _names_in(self, expr: ca.SX) -> list[str]:
+        symbols = ca.symvar(expr)
+        for symbol in symbols:
+            # A symbol of the same name that another model has would be a constant here.
+            if not ca.is_equal(symbol, self.symbols.get(symbol.name(), _NOTHING)):
+                raise ExpressionError(f"`{symbol.name()}` is not a symbol of this model: write it as `model[...]`")
         # CasADi lists symbols in traversal order; the order of declaration is the one a reader knows.
-        return sorted((symbol.name() for symbol in ca.symvar(expr)), key=self._position.__getitem__)
+        return sorted((symbol.name() for symbol in symbols), key=self._position.__getitem__)
 
     def derivative(self, expr: ca.SX, variable: str) -> ca.SX:
         """The total derivative of `expr` with respect to a leaf; 0 where it is structurally zero."""

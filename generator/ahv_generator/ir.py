@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 from . import __version__, emit, units
+from .contents import TableParameter
 from .expression import tree
 from .function import Function, Output
 from .model import Model
-from .schema import Choice, Rule, Variable
-from .table import Table, TableParameter
+from .schema import Choice, Quantity, Rule, Variable
+from .table import Table
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 
 
 class _Line:
@@ -81,6 +82,7 @@ def assemble(table: Table, parts: Iterable[Part]) -> str:
             _Line(_parameter(p) | {"kind": p.kind, "models": table.only_for(*p.path)}) for p in table.parameters
         ],
         "validity": [_Line(_interval(v, table)) for v in table.schema.validity],
+        "fits": [_Line(_fit(q, table)) for q in table.schema.quantities],
         "rules": [_Line(_rule(r)) for r in table.schema.rules()],
         "models": [_Text(p.text) for p in parts],
     }
@@ -111,6 +113,28 @@ def _interval(v: Variable, table: Table) -> dict[str, object]:
     }
 
 
+def _fit(q: Quantity, table: Table) -> dict[str, object]:
+    """What the monomials of a fit may be, whether the table has them or not."""
+    intervals = {v.name for v in table.schema.validity}
+    return {
+        "section": q.key,
+        "unit": units.converted(q.unit, table.units),
+        "doc": q.doc,
+        "variables": [
+            {
+                "name": v.name,
+                "unit": units.converted(v.unit, table.units),
+                "doc": v.doc,
+                "interval": v.interval if v.interval in intervals else None,
+            }
+            for v in q.depends_on
+        ],
+        "required": list(q.required),
+        "affine": list(q.affine),
+        "models": table.only_for(q.key, ""),
+    }
+
+
 def _replacement(p: TableParameter) -> dict[str, object]:
     whole = _parameter(p)
     return {key: whole[key] for key in ("name", "path", "source", "status", "uncertainty")}
@@ -133,7 +157,9 @@ def _choice(choice: Choice) -> dict[str, object]:
 def _units(table: Table, parts: Iterable[Part]) -> dict[str, object]:
     """Every unit of the document, with what it is in the other system."""
     other = units.other(table.units)
-    used = {p.unit for p in table.parameters} | {units.converted(v.unit, table.units) for v in table.schema.validity}
+    fits = table.schema.quantities
+    declared: list[Quantity | Variable] = [*table.schema.validity, *fits, *(v for q in fits for v in q.depends_on)]
+    used = {p.unit for p in table.parameters} | {units.converted(it.unit, table.units) for it in declared}
     used = used.union(*(p.units for p in parts))
     factors = {unit: _Line([units.converted(unit, other), units.conversion(unit, other)]) for unit in sorted(used)}
     return {"system": table.units, "other": other, "factors": factors}

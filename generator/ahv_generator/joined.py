@@ -7,11 +7,14 @@ from dataclasses import dataclass, field, replace
 
 import casadi as ca
 
-from .diagnostics import FamilyError
+from .diagnostics import Diagnostic, FamilyError, TableError
 from .model import Gains, Model, Rates
 from .part import Instance, Noted
 from .schema import Parameter, Variable
 from .traits import Equation, Given, Named, Sought, name_of
+
+# Sections of a table: the parts, and the models that they join.
+PARTS, JOINED = "parts", "joined"
 
 Bases = Mapping[str, tuple[Variable, ...]]
 
@@ -52,10 +55,12 @@ class JoinedModel(Model):
     """
 
     instances: tuple[Instance, ...] = ()
+    of: str | None = None
     _parts: dict[str, Noted] = field(default_factory=dict)
     _current: str = ""
     _seen: dict[str, ca.SX] = field(default_factory=dict)
     _reached: set[str] = field(default_factory=set)
+    _asked: dict[str, None] = field(default_factory=dict)
     _has_diffusion: bool = False
 
     def __post_init__(self) -> None:
@@ -74,26 +79,29 @@ class JoinedModel(Model):
         self._parts[self._current] = of
         for name, expr in of.driven.items():
             self.define(self._driven(name), expr)
-        for name in of.added:
-            if name not in self.names("state"):
-                raise FamilyError(f"a part adds to a state; `{name}` is not a state of `{self.name}`")
 
     def check(self) -> None:
         """Raise `FamilyError` when something is missing; state what the family leaves to the parts."""
-        super().check()
-        added = [name for of in self._parts.values() for name in of.added]
-        if unseen := [name for name in added if name not in self._reached]:
-            raise FamilyError(
-                f"no curve fit of `{self.name}` sees `{unseen[0]}`: what a part adds to it would change nothing"
-            )
-        if not self._has_diffusion and "noise" in self.bases:
+        if not self._has_diffusion and "noise" in self.bases and self.rates is not None:
             super().diffusion(self._all_gains(), "the columns are those of the parts", "")
+        super().check()
+        for part, noted in self._parts.items():
+            for name in noted.added:
+                if name not in self._reached:
+                    seen = ", ".join(f"`{one}`" for one in self._asked) or "none"
+                    raise self._fault(
+                        (PARTS, part),
+                        f"no curve fit of `{self.name}` sees `{name}`: what `{part}` adds to it would change nothing",
+                        f"states that curve fits see: {seen}",
+                    )
         for instance in self.instances:
             self.mode(instance.name.replace("_", " "), *instance.states)
 
     def seen(self, named: Named, value: ca.SX | None = None) -> ca.SX:
         """A state as curve fits see it: with what the parts add."""
         name, value = name_of(named), super().seen(named, value)
+        if name in self.names("state"):
+            self._asked[name] = None
         added = [of.added[name] for of in self._parts.values() if name in of.added]
         if not added:
             return value
@@ -109,9 +117,11 @@ class JoinedModel(Model):
     def derivative(self, expr: ca.SX, named: Named | Parameter) -> ca.SX:
         """The total derivative of an expression; there is none with respect to an input that a part drives."""
         if any(name_of(named) in of.driven for of in self._parts.values()):
-            raise FamilyError(
+            raise self._fault(
+                (JOINED, self.name),
                 f"`{name_of(named)}` is driven by a part: it is not an input of `{self.name}`, and there is no"
-                " derivative with respect to it"
+                f" derivative with respect to it, which the equations of `{self.of}` take",
+                f"join what drives `{name_of(named)}` to another model",
             )
         return super().derivative(expr, named)
 
@@ -152,8 +162,10 @@ class JoinedModel(Model):
             noted = self._parts[instance.name]
             driven = {name: like.pop(name) for name in noted.driven if name in like}
             if driven and len(instance.inputs) != len(driven):
-                raise FamilyError(
-                    f"the trim of `{self.name}` seeks `{next(iter(driven))}`, which `{instance.name}` drives by itself"
+                raise self._fault(
+                    (JOINED, self.name),
+                    f"the trim of `{self.name}` seeks `{next(iter(driven))}`, which `{instance.name}` drives by itself",
+                    "a part whose own input stands for the one that it drives can be sought in its place",
                 )
             of_state = {
                 expr.name(): like_it for name, like_it in driven.items() if (expr := noted.driven[name]).is_symbolic()
@@ -177,6 +189,10 @@ class JoinedModel(Model):
         """The deviations that cost 1; the inputs of a part stand for those that it drives."""
         named = {name_of(variable): size for variable, size in deviations.items()}
         super().deviations({one: size for name, size in named.items() for one in self._inputs_for(name)})
+
+    def _fault(self, path: tuple[str, ...], message: str, help: str) -> TableError:
+        """What the table joins wrongly."""
+        return TableError([Diagnostic("joined", self.table.path.name, path, "key", message, help)])
 
     def _inputs_for(self, name: str) -> tuple[str, ...]:
         """What stands for an input that a part drives; another name stands for itself."""

@@ -4,30 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from . import family_file, names
-from .diagnostics import FamilyError, TableError, suggestion
+from . import family_file, names, units
+from .diagnostics import FamilyError, TableError, nearest, suggestion
 from .entries import Entries
 from .family import Family, ModelSpec
-from .family_file import PartFile
-from .part import Instance, Part
+from .family_file import PartFile, Place
+from .joined import JOINED, PARTS, joined_bases
+from .part import Instance, Join, Part
 from .schema import Variable
 
-PARTS, JOINED = "parts", "joined"
 _JOINED_KEYS = ("model", "title", "parts")
 
 # Section, name and key of an entry, and the text that stands there.
-Join = tuple[str, str, str, str]
+JoinText = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
 class _Listed:
-    """An entry of `[parts]`: the file of the part, and what each of its joins is called in the model."""
+    """An entry of `[parts]`: the file of the part, what it joins, and what that is called in the model."""
 
     file: PartFile
-    made: Callable[[dict[str, Variable]], Part]
-    joins: Mapping[str, str]
+    made: Callable[[dict[str, Variable], Place | None], Part]
+    joins: Mapping[str, Join]
+    names: Mapping[str, str]
 
 
 class Joins:
@@ -36,15 +38,19 @@ class Joins:
     def __init__(self, entries: Entries, folder: Path) -> None:
         self.entries, self.faults, self.folder = entries, entries.faults, folder
 
-    def read(self, family: Family) -> tuple[Join, ...]:
+    def read(self, family: Family) -> tuple[JoinText, ...]:
         """Add the models of `[joined]`; a table may have none. What the two sections say, without titles."""
+        before = len(self.faults.found)
         parts = {name: listed for name, entry in self._section(PARTS) if (listed := self._part(name, entry))}
+        self._stop(before)
         used: set[str] = set()
         for name, entry in self._section(JOINED):
             used.update(self._join(family, name, entry, parts))
+        self._stop(before)
         for name in parts:
             if name not in used:
                 self.faults.key("unused-part", (PARTS, name), f"no model of `[{JOINED}]` has the part `{name}`")
+        self._stop(before)
         entries = [(section, *entry) for section in (PARTS, JOINED) for entry in self._section(section)]
         return tuple(
             (section, name, key, ", ".join(map(str, text)) if isinstance(text, list) else str(text))
@@ -52,6 +58,11 @@ class Joins:
             for key, text in (entry.items() if isinstance(entry, dict) else ())
             if key != "title"
         )
+
+    def _stop(self, before: int) -> None:
+        """Raise what was found since; what a table with other parts should hold is not known."""
+        if len(self.faults.found) > before:
+            self.faults.raise_any()
 
     def _section(self, name: str) -> Iterable[tuple[str, object]]:
         return self.entries.section(name).items() if name in self.entries.document else ()
@@ -83,7 +94,7 @@ class Joins:
         missing = [key for key in joins if key not in entry]
         for key in missing:
             self.faults.key("missing", path, f"`{key}` is missing: what of the model the part joins")
-        return None if missing else _Listed(file, made, {key: entry[key] for key in joins})
+        return None if missing else _Listed(file, made, joins, {key: entry[key] for key in joins})
 
     def _join(self, family: Family, name: str, entry: object, parts: Mapping[str, _Listed]) -> list[str]:
         """Add a model of `[joined]`; the names of its parts."""
@@ -128,19 +139,50 @@ class Joins:
             self.faults.key("joined", (JOINED, name), str(error), error.help)
 
     def _instances(self, of: ModelSpec, parts: Mapping[str, _Listed]) -> list[Instance]:
-        """The parts, made of the variables that they join; a part may join one before it."""
-        known: dict[str, Variable] = {one.name: one for basis in ("state", "input") for one in of.bases[basis]}
+        """The parts, made of the variables that they join; a part may join one before it.
+
+        There are no more after one that does not fit.
+        """
+        bases = of.bases
+        drivers: dict[str, str] = {}
         instances: list[Instance] = []
         for name, listed in parts.items():
-            joined = {key: known[wanted] for key, wanted in listed.joins.items() if wanted in known}
-            for key, wanted in listed.joins.items():
-                if wanted not in known:
-                    message = f"`{wanted}` is neither a state nor an input of `{of.name}`"
-                    self.faults.value("unknown-join", (PARTS, name, key), message, suggestion(wanted, known))
+            joined = self._joined(of.name, name, listed, bases, drivers)
             if len(joined) < len(listed.joins):
-                continue
-            part = listed.made(joined)
-            instance = Instance(name, part, listed.file.faults)
-            known |= {one.name: one for one in map(instance.variable, (*part.states, *part.inputs))}
+                break
+            place = Place(self.faults.file, (PARTS, name))
+            part = listed.made(joined, place)
+            instance = Instance(name, part, partial(listed.file.faults, place))
+            bases = joined_bases(bases, [instance])
+            drivers |= {driven.name: name for driven in part.drives}
             instances.append(instance)
         return instances
+
+    def _joined(
+        self, model: str, name: str, listed: _Listed, bases: Mapping[str, tuple[Variable, ...]], drivers: dict[str, str]
+    ) -> dict[str, Variable]:
+        """The variables that a part joins; `drivers` are parts before it, by the inputs that they drive."""
+        found: dict[str, Variable] = {}
+        for key, wanted in listed.names.items():
+            join, known = listed.joins[key], {one.name: one for kind in ("state", "input") for one in bases[kind]}
+            fitting = {one.name: one for kind in join.kinds for one in bases[kind] if _has_unit(one, join)}
+            if wanted in fitting:
+                found[key] = fitting[wanted]
+                continue
+            what = f"`{key}` of `{listed.file.path.stem}` is {join.words(self.entries.system)}"
+            if wanted in drivers:
+                message = f"`{wanted}` is driven by `{drivers[wanted]}` already"
+            elif wanted not in known:
+                message = f"`{wanted}` is neither a state nor an input of `{model}`"
+            else:
+                kind = "a state" if known[wanted] in bases["state"] else "an input"
+                unit = units.converted(known[wanted].unit, self.entries.system)
+                message = f"`{wanted}` is {kind} in `{unit}`; {what}"
+            advice = None if wanted in known or wanted in drivers else nearest(wanted, fitting)
+            advice = advice or "; ".join([what, suggestion("", fitting) or "there is none here"])
+            self.faults.value("unknown-join", (PARTS, name, key), message, advice)
+        return found
+
+
+def _has_unit(variable: Variable, join: Join) -> bool:
+    return join.unit is None or units.dimensions(variable.unit) == units.dimensions(join.unit)

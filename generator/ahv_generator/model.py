@@ -5,31 +5,27 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
 
 import casadi as ca
 
 from . import motion, names, stochastic, units
-from .diagnostics import FamilyError, suggestion
-from .function import Entry, Function, NoiseStructure, Output
-from .graph import Graph, Intermediate
+from .checked import checked
+from .derivation import Derivation
+from .diagnostics import FamilyError, Once, suggestion
+from .function import Entry, NoiseStructure, Output
+from .graph import Intermediate
 from .polynomial import Polynomial
 from .schema import Parameter, Quantity, Variable, check_texts
 from .traits import Equation, Given, Mode, Named, Sought, Traits, Trim, name_of
 
-if TYPE_CHECKING:
-    from .table import Table
-
-# Prefixes that tell leaves of different bases apart: a Wiener increment and its intensity may share a name.
-LEAVES = {"state": "x", "input": "u", "noise": "w", "argument": "t"}
-
-Rates = Mapping[Variable, ca.SX] | Mapping[str, ca.SX]
-Gains = Mapping[tuple[Variable, Variable], ca.SX] | Mapping[tuple[str, str], ca.SX]
+Number = ca.SX | float
+Rates = Mapping[Variable, Number] | Mapping[str, Number]
+Gains = Mapping[tuple[Variable, Variable], Number] | Mapping[tuple[str, str], Number]
 
 
 @dataclass
-class Model:
+class Model(Derivation):
     """A model under construction: what a family's function is given, and states the equations with.
 
     Expressions are CasADi scalars: `model[alpha]` is the symbol of a state, an input, a parameter or a quantity, and
@@ -37,30 +33,20 @@ class Model:
     travel into the generated code; its dimensions are checked where it is defined.
     """
 
-    name: str
-    title: str
-    equations: str
-    table: Table
-    bases: dict[str, tuple[Variable, ...]]
     traits: Traits = field(default_factory=Traits)
-    graph: Graph = field(init=False)
-    functions: list[Function] = field(default_factory=list)
     noise_structure: NoiseStructure | None = None
     rates: dict[str, ca.SX] | None = None
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._section, self._equation = self.title, ""
+        self._once = Once()
         # Of a quantity the unit that its author states it in; the graph has those of the table.
         self._units: dict[str, str] = {}
-        self.graph = Graph(self.table.units)
-        for basis, prefix in LEAVES.items():
-            for variable in self.bases.get(basis, ()):
-                self.graph.leaf(f"{prefix}.{variable.name}", variable.unit, variable.symbol)
-        for parameter in self.table.parameters:
-            self.graph.leaf(f"p.{parameter.name}", parameter.unit, parameter.symbol)
 
     # Quantities
 
+    @checked
     def __getitem__(self, named: Named | Parameter) -> ca.SX:
         """The symbol of a quantity, a state, an input, a parameter or an argument, by its declaration or its name.
 
@@ -79,10 +65,12 @@ class Model:
         """The symbols of all parameters and coefficients, by their names in the generated code."""
         return {p.name: self.graph.symbols[f"p.{p.name}"] for p in self.table.parameters}
 
+    @checked
     def symbols(self, *named: Named | Parameter) -> tuple[ca.SX, ...]:
         """Several symbols at once: `V, gamma = model.symbols(velocity, path_angle)`."""
         return tuple(self[one] for one in named)
 
+    @checked
     @contextlib.contextmanager
     def section(self, title: str, equation: str = "") -> Iterator[None]:
         """A section of the paper: `with model.section("Air", "(2)"):`.
@@ -97,6 +85,7 @@ class Model:
         finally:
             self._section, self._equation = outer
 
+    @checked
     def define(
         self,
         name: Named,
@@ -138,6 +127,7 @@ class Model:
             section=self._section,
         )
 
+    @checked
     def fit(
         self,
         quantity: Quantity | str,
@@ -175,6 +165,7 @@ class Model:
             expr = per_variable * symbols[collect.name] + rest
         return self.define(name, expr, spec.symbol, spec.unit, spec.doc, equation=equation)
 
+    @checked
     def seen(self, named: Named, value: ca.SX | None = None) -> ca.SX:
         """A state as curve fits see it: with what parts add to it, such as the incidence of a gust.
 
@@ -195,6 +186,7 @@ class Model:
             raise FamilyError(f"no table of `{self.name}` has the quantity `{key}`", suggestion(key, declared))
         return declared[key]
 
+    @checked
     def derivative(self, expr: ca.SX, named: Named | Parameter) -> ca.SX:
         """The total derivative of an expression with respect to a state, an input or a parameter."""
         name = name_of(named)
@@ -205,6 +197,7 @@ class Model:
 
     # What the model is
 
+    @checked
     def motion(self, rates: Rates, equation: str | None = None) -> None:
         """The equations of motion: the time derivative of every state; with them their first and second derivatives.
 
@@ -212,8 +205,7 @@ class Model:
             FamilyError: when a rate is missing, or is of something that is not a state.
             ExpressionError: when a rate has not the unit of its state per second.
         """
-        if self.rates is not None:
-            raise FamilyError(f"the equations of motion of `{self.name}` are stated twice")
+        self._once("model.motion")
         named = {name_of(state): ca.SX(rate) for state, rate in rates.items()}
         states = self.names("state")
         self._refuse_unknown("states", named, states)
@@ -225,6 +217,7 @@ class Model:
         self.rates = {state: named[state] for state in states}
         motion.add_drift_and_derivatives(self, self.rates, self._equation if equation is None else equation)
 
+    @checked
     def diffusion(self, gains: Gains, doc: str, equation: str | None = None) -> None:
         """The diffusion G of dx = f dt + G dW, by (state, Wiener increment), read in the Itô sense.
 
@@ -233,18 +226,24 @@ class Model:
         """
         if self.rates is None:
             raise FamilyError("the diffusion follows the equations of motion: call `model.motion(...)` first")
+        self._once("model.diffusion")
         named = {(name_of(row), name_of(column)): ca.SX(gain) for (row, column), gain in gains.items()}
         rows, columns = self.names("state"), self.names("noise") if "noise" in self.bases else ()
         self._refuse_unknown("states", dict.fromkeys(row for row, _ in named), rows)
         self._refuse_unknown("Wiener increments", dict.fromkeys(column for _, column in named), columns)
+        idle = [column for column in columns if column not in [name for _, name in named]]
+        if idle:
+            raise FamilyError(f"the Wiener increment `{idle[0]}` of `{self.name}` has no gain: it would drive nothing")
         for (row, column), gain in named.items():
             unit = units.quotient(self.unit(row), self.unit(column))
             self.graph.check(f"the gain of `{column}` in the rate of `{row}`", gain, unit)
         equation = self._equation if equation is None else equation
         self.noise_structure = stochastic.add_diffusion(self, self.rates, named, doc, equation)
 
+    @checked
     def outputs(self, *named: Named) -> None:
         """Quantities that commands print and reports show beside the states, as one function and one vector."""
+        self._once("model.outputs")
         quantities = [self._defined(one) for one in named if name_of(one) not in self.names("state")]
         self._refuse_unknown("outputs", (q.name for q in quantities), self.graph.quantities)
         stated = [self._units.get(q.name, q.unit) for q in quantities]
@@ -261,11 +260,17 @@ class Model:
             raise FamilyError(
                 f"the model `{self.name}` has no equations of motion; state them with `model.motion(...)`"
             )
+        if "noise" in self.bases and self.noise_structure is None:
+            raise FamilyError(
+                f"the model `{self.name}` has the noise {_listed(list(self.names('noise')))}, but no diffusion",
+                "state it with `model.diffusion(...)`, or leave out `noise=`",
+            )
         if not self.bases.get("output"):
             raise FamilyError(f"`{self.name}` has no outputs; state them with `model.outputs(...)`")
         known = [name for basis in ("state", "input", "output") for name in self.names(basis)]
         self._refuse_unknown("states, inputs and outputs that a trim shows", self.traits.trim.shown, known)
 
+    @checked
     def evaluations(self, *named: Named) -> None:
         """Quantities that have a function each, for callers that need one alone."""
         for one in named:
@@ -274,6 +279,7 @@ class Model:
             expr = self.graph.symbols[quantity.name]
             self.add_scalar(quantity.name, "evaluations", doc, quantity.equation, expr, quantity.unit)
 
+    @checked
     def trim(
         self,
         *,
@@ -292,6 +298,7 @@ class Model:
         Raises:
             FamilyError: when there are not as many equations as unknowns, or a name fits nothing.
         """
+        self._once("model.trim")
         trim = Trim(tuple(given), tuple(sought), tuple(equations), *(tuple(map(name_of, n)) for n in (moving, shown)))
         rows, unknowns = [row.name for row in trim.equations], [one.name for one in trim.sought]
         states, givens = self.names("state"), [one.name for one in trim.given]
@@ -315,6 +322,7 @@ class Model:
             raise FamilyError(f"{_listed(both)} is given and sought in the trim of `{self.name}`")
         self.traits.trim = trim
 
+    @checked
     def mode(self, name: str, *states: Named, slowest: str | None = None) -> None:
         """Name the poles of some states; of an odd number of real poles the slowest may have a name of its own."""
         check_texts(name)
@@ -323,14 +331,18 @@ class Model:
         self._refuse_unknown("states of modes", (*of_others, *mode.states), self.names("state"))
         self.traits.modes += (mode,)
 
+    @checked
     def defaults(self, *, inputs: Iterable[Named] = (), outputs: Iterable[Named] = ()) -> None:
         """The inputs and the states that a transfer function is of, if a command names none."""
+        self._once("model.defaults")
         self.traits.inputs, self.traits.outputs = tuple(map(name_of, inputs)), tuple(map(name_of, outputs))
         self._refuse_unknown("default inputs", self.traits.inputs, self.names("input"))
         self._refuse_unknown("default outputs", self.traits.outputs, self.names("state"))
 
+    @checked
     def deviations(self, deviations: Mapping[Variable, float] | Mapping[str, float]) -> None:
         """The deviations of states and inputs that cost 1 in a regulator, in the units of the variables."""
+        self._once("model.deviations")
         self.traits.deviations = {name_of(variable): size for variable, size in deviations.items()}
         known = (*self.names("state"), *self.names("input"))
         self._refuse_unknown("deviations", self.traits.deviations, known)
@@ -338,8 +350,10 @@ class Model:
             if not 0 < size < math.inf:
                 raise FamilyError(f"the deviation of `{name}` is {size!r}; it must be positive and finite")
 
+    @checked
     def note(self, text: str) -> None:
         """A warning that commands print before they use the model."""
+        self._once("model.note")
         check_texts(text)
         self.traits.note = text
 
@@ -357,67 +371,6 @@ class Model:
             help_line = suggestion(name, self.graph.quantities)
             raise FamilyError(f"`{name}` is not a quantity that `{self.name}` has defined", help_line)
         return self.graph.quantities[name]
-
-    # Names, units and functions
-
-    def noise(self, name: str) -> ca.SX:
-        """The symbol of a Wiener increment."""
-        return self.graph.symbols[f"w.{name}"]
-
-    def unit(self, name: str) -> str:
-        """The unit of a state, an input or another component, in the system of the table."""
-        return units.converted(self.variable(name).unit, self.table.units)
-
-    def variable(self, name: str) -> Variable:
-        """A component of a basis by its name."""
-        return next(v for basis in self.bases.values() for v in basis if v.name == name)
-
-    def leaves(self, basis: str) -> dict[str, str]:
-        """Names of the entries of a basis, in order, with the names that they have in expressions."""
-        if basis == "parameter":
-            return {p.name: f"p.{p.name}" for p in self.table.parameters}
-        return {v.name: f"{LEAVES[basis]}.{v.name}" for v in self.bases[basis]}
-
-    def names(self, basis: str) -> tuple[str, ...]:
-        """Names of the entries of a basis, in order."""
-        return tuple(v.name for v in self.bases[basis])
-
-    def vector(self, basis: str, values: Mapping[str, ca.SX], name: str) -> Output:
-        """An output over one basis."""
-        entries = tuple(Entry((row,), values[row]) for row in self.names(basis) if not values[row].is_zero())
-        return Output(name, (basis,), entries)
-
-    def matrix(self, name: str, rows: str, columns: str, exprs: Mapping[str, ca.SX]) -> Output:
-        """The derivatives of `exprs` (by row) with respect to a basis."""
-        # Column by column, so that the derivatives with respect to one variable stand together.
-        found = {
-            (row, column): self.graph.derivative(exprs[row], leaf)
-            for column, leaf in self.leaves(columns).items()
-            for row in self.names(rows)
-        }
-        at = [(row, column) for row in self.names(rows) for column in self.leaves(columns)]
-        entries = tuple(Entry(key, found[key]) for key in at if not found[key].is_zero())
-        return Output(name, (rows, columns), entries)
-
-    def add(
-        self, name: str, group: str, doc: str, equation: str, outputs: Iterable[Output], *, compressed: bool = False
-    ) -> None:
-        """Add a function; the units of its outputs are turned into those of the table, and checked."""
-        if name in [function.name for function in self.functions]:
-            raise FamilyError(f"the name `{name}` is used twice, for two functions of `{self.name}`")
-        system = self.table.units
-        converted = tuple(
-            replace(o, unit=units.converted(o.unit, system)) if o.unit is not None else o for o in outputs
-        )
-        for output in converted:
-            for entry in output.entries:
-                if output.unit is not None:
-                    self.graph.check(f"the function `{name}`", entry.expr, output.unit)
-        self.functions.append(Function(name, group, doc, equation, converted, compressed))
-
-    def add_scalar(self, name: str, group: str, doc: str, equation: str, expr: ca.SX, unit: str) -> None:
-        """Add a function with one number as its result."""
-        self.add(name, group, doc, equation, [Output("", (), (Entry((), expr),), unit)])
 
 
 def _listed(stated: list[str]) -> str:

@@ -34,15 +34,31 @@ line.
 
 from __future__ import annotations
 
-import casadi
-from casadi import asin, atan, atan2, cos, exp, fmax, fmin, if_else, log, sin, sqrt, tan, tanh
-
 from .atmosphere import EXPONENTIAL, US_1976, Air, exponential_density, us_standard_atmosphere_1976
 from .diagnostics import FamilyError
+from .elementary import (
+    Expr,
+    acos,
+    asin,
+    atan,
+    atan2,
+    cos,
+    cosh,
+    exp,
+    fmax,
+    fmin,
+    log,
+    select,
+    sin,
+    sinh,
+    sqrt,
+    tan,
+    tanh,
+)
 from .family import Family, Outline
 from .function import Entry, Output
 from .model import Gains, Model, Rates
-from .part import Part, PartModel
+from .part import Input, Join, Part, PartModel, State
 from .schema import (
     NOT_NEGATIVE,
     NOT_ZERO,
@@ -56,17 +72,6 @@ from .schema import (
     switch,
 )
 from .traits import Equation, Given, Sought
-
-Expr = casadi.SX
-
-
-def select(condition: Expr, then: Expr | float, otherwise: Expr | float) -> Expr:
-    """`then` where the condition (`a < b`, or `<=`, `>`, `>=`) holds, else `otherwise`.
-
-    Both are computed; the slope is that of the one that is chosen.
-    """
-    return if_else(condition, then, otherwise)
-
 
 __all__ = [
     "EXPONENTIAL",
@@ -83,6 +88,8 @@ __all__ = [
     "FamilyError",
     "Gains",
     "Given",
+    "Input",
+    "Join",
     "Model",
     "Option",
     "Outline",
@@ -94,11 +101,14 @@ __all__ = [
     "Rates",
     "Rule",
     "Sought",
+    "State",
     "Variable",
+    "acos",
     "asin",
     "atan",
     "atan2",
     "cos",
+    "cosh",
     "exp",
     "exponential_density",
     "fmax",
@@ -106,6 +116,7 @@ __all__ = [
     "log",
     "select",
     "sin",
+    "sinh",
     "sqrt",
     "switch",
     "tan",

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from .boundaries import add_boundaries
+from .derivation import Derivation
 from .function import Entry, Output
 
-if TYPE_CHECKING:
-    from .model import Model
 
-
-def add_drift_and_derivatives(m: Model, rates: Mapping[str, ca.SX], equation: str) -> None:
+def add_drift_and_derivatives(m: Derivation, rates: Mapping[str, ca.SX], equation: str) -> None:
     """The drift, its Jacobians by state, input and parameters, and its second derivatives by the state."""
     drift = m.vector("state", rates, "drift")
     by_state = m.matrix("state", "state", "state", rates)
@@ -43,7 +40,7 @@ def add_drift_and_derivatives(m: Model, rates: Mapping[str, ca.SX], equation: st
     add_boundaries(m, rates)
 
 
-def _hessian(m: Model, by_state: Output) -> Output:
+def _hessian(m: Derivation, by_state: Output) -> Output:
     """Entries with the later state first; the mirror image is the same number."""
     leaves = m.leaves("state")
     order = list(leaves)

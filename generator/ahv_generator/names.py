@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 # Of this name is the file beside the IRs that holds the audit of the printed equations.
 _AUDIT = "audit"
@@ -13,6 +14,16 @@ _KEYWORDS = frozenset(
     "impl in let loop macro match mod move mut override priv pub ref return self static struct super trait true try "
     "type typeof unsafe unsized use virtual where while yield".split()
 )
+
+# A module of such a name would hide the crate. A test holds them against the manifest of `generated/`.
+_CRATES = frozenset({"ahv_core", "nalgebra"})
+
+# Functions of the generated code that no model states, and what ends the names of those that come with another.
+_FUNCTIONS = frozenset("intermediates slopes curvatures sensitivities prepare rk4_step euler_maruyama_step".split())
+_WITH_ANOTHER = ("_from", "_values")
+
+# The module of a model is a folder beside `lib.rs`, its page a file beside these.
+_FILES = frozenset({"lib", "audit", "passes", "readme"})
 
 # A set becomes a constant of the generated code; these stand beside it. A test holds them against `generated/`.
 _CONSTANTS = frozenset(
@@ -37,7 +48,11 @@ def fault_of_identifier(name: object) -> str | None:
 
 
 def fault_of_model(name: object) -> str | None:
-    """Why a model cannot have this name."""
+    """Why a model cannot have this name, which is that of a module at the root of the package."""
+    if name in _CRATES:
+        return f"`{name}` is a crate that the generated code needs; choose another name"
+    if name in _FILES:
+        return f"`{name}` is a file of the generated package; choose another name"
     return fault_of_identifier(name) or _fault_of_length(str(name))
 
 
@@ -62,6 +77,14 @@ def fault_of_quantity(name: str) -> str | None:
     if re.match(r"d\d?_|slope_of_", name):
         return f"`{name}` would be taken for a derivative; choose a name that does not begin with `d_`"
     return fault_of_identifier(name)
+
+
+def fault_of_functions(functions: Iterable[str]) -> str | None:
+    """Why a model cannot have functions of these names."""
+    stated = list(functions)
+    made = _FUNCTIONS.union(f"{name}{ending}" for name in stated for ending in _WITH_ANOTHER)
+    clash = next((name for name in stated if name in made), None)
+    return None if clash is None else f"`{clash}` is a function of the generated code already; choose another name"
 
 
 def fault_of_table(name: object) -> str | None:

@@ -5,14 +5,37 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import casadi as ca
 
 from . import names, units
-from .diagnostics import FamilyError, suggestion
-from .schema import Parameter, Rule, Variable, check_texts
+from .checked import check_fields, checked
+from .diagnostics import FamilyError, Once, suggestion
+from .schema import Parameter, Rule, Variable, check_order, check_texts
 from .traits import Named, name_of
+
+
+@dataclass(frozen=True)
+class Join:
+    """What an argument of a function `part` stands for: a `state` or an `input` of the model, in such a unit."""
+
+    kind: str | None = None
+    unit: str | None = None
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The bases that it may be of."""
+        return ("state", "input") if self.kind is None else (self.kind,)
+
+    def words(self, system: str) -> str:
+        """As a message says it, with the unit of a table's system."""
+        what = {"state": "a state", "input": "an input"}.get(self.kind or "", "a state or an input")
+        return what if self.unit is None else f"{what} in `{units.converted(self.unit, system)}`"
+
+
+State = Annotated[Variable, Join("state")]
+Input = Annotated[Variable, Join("input")]
 
 
 class Host(Protocol):
@@ -26,6 +49,9 @@ class Host(Protocol):
 
     def define(self, name: Named, expr: ca.SX | float, symbol: str = "", unit: str = "", doc: str = "") -> ca.SX:
         """Name a quantity."""
+
+    def names(self, basis: str) -> tuple[str, ...]:
+        """Names of the entries of a basis, in order."""
 
     def unit(self, name: str) -> str:
         """The unit of a variable, in the system of the table."""
@@ -53,7 +79,8 @@ class Part:
     """A part before it joins: its own variables and parameters, and the inputs of the model that it drives.
 
     A part is a file with a function `part`. Its arguments are what the part joins, variables of the model; a table
-    names them by the names of the arguments. Names of the part's own are local: in the joined model the name of the
+    names them by the names of the arguments, whose annotations say what fits: `State`, `Input`, or, with a unit,
+    `Annotated[Variable, Join("state", "ft/s")]`. Names of the part's own are local: in the joined model the name of the
     part's instance and `_` stand before them. Each state and input that shares no interval has one in `[validity]`.
     """
 
@@ -67,6 +94,8 @@ class Part:
     build: Callable[[PartModel], None] | None = None
 
     def __post_init__(self) -> None:
+        check_fields(self)
+        self._once = Once()
         check_texts(self.title)
         own = [one.name for one in self.variables] + [one.name for one in self.parameters]
         twice = [name for name in own if own.count(name) > 1]
@@ -74,19 +103,24 @@ class Part:
             raise FamilyError(f"the name `{twice[0]}` is used twice in the part")
         if not self.states:
             raise FamilyError("a part has one state at least")
-        known = [one.name for one in self.parameters]
+        check_order(self.parameters)
+        known = {one.name: one.unit for one in self.parameters}
         for rule in self.rules:
             for name in rule.parameters():
                 if name not in known:
-                    raise FamilyError(f"the rule `{rule.name}` names `{name}`, which the part does not have")
+                    message = f"the rule `{rule.name}` names `{name}`, which the part does not have"
+                    raise FamilyError(message, suggestion(name, known))
+            rule.check_dimensions(known.__getitem__)
 
     @property
     def variables(self) -> tuple[Variable, ...]:
         """States, inputs and Wiener increments."""
         return (*self.states, *self.inputs, *self.noise)
 
+    @checked
     def equations(self, build: Callable[[PartModel], None]) -> Callable[[PartModel], None]:
         """Decorates the function that states the equations, with the `PartModel` that it is given."""
+        self._once("equations")
         self.build = build
         return build
 
@@ -147,7 +181,9 @@ class PartModel:
         self._instance, self._part, self._model = instance, instance.part, model
         self._noted = Noted()
         self._quantities: set[str] = set()
+        self._once = Once()
 
+    @checked
     def __getitem__(self, named: Named | Parameter) -> ca.SX:
         """The symbol of a variable, a parameter or a quantity of the part, or of a variable of the model."""
         if isinstance(named, Parameter):
@@ -156,16 +192,19 @@ class PartModel:
         own = name in self._quantities or name in [one.name for one in self._part.variables]
         return self._model[self._instance.full(name) if own else name]
 
+    @checked
     def symbols(self, *named: Named | Parameter) -> tuple[ca.SX, ...]:
         """Several symbols at once."""
         return tuple(self[one] for one in named)
 
+    @checked
     @contextlib.contextmanager
     def section(self, title: str, equation: str = "") -> Iterator[None]:
         """A section of the generated code."""
         with self._model.section(title, equation):
             yield
 
+    @checked
     def define(self, name: str, expr: ca.SX | float, symbol: str, unit: str, doc: str) -> ca.SX:
         """Name a quantity of the part, and return its symbol."""
         fault = names.fault_of_identifier(name)
@@ -175,8 +214,10 @@ class PartModel:
         self._quantities.add(name)
         return quantity
 
-    def motion(self, rates: Mapping[Variable, ca.SX]) -> None:
+    @checked
+    def motion(self, rates: Mapping[Variable, ca.SX | float]) -> None:
         """The time derivative of every state of the part."""
+        self._once("model.motion")
         named = {name_of(state): ca.SX(rate) for state, rate in rates.items()}
         states = [state.name for state in self._part.states]
         self._refuse_unknown("states", named, states)
@@ -187,8 +228,10 @@ class PartModel:
         for state, rate in self._noted.rates.items():
             self._model.check_dimensions(f"the rate of `{state}`", rate, f"{self._model.unit(state)}/s")
 
-    def diffusion(self, gains: Mapping[tuple[Variable, Variable], ca.SX]) -> None:
+    @checked
+    def diffusion(self, gains: Mapping[tuple[Variable, Variable], ca.SX | float]) -> None:
         """The diffusion of the part, by (state, Wiener increment), read in the Itô sense."""
+        self._once("model.diffusion")
         named = {(name_of(row), name_of(column)): ca.SX(gain) for (row, column), gain in gains.items()}
         self._refuse_unknown("states", [row for row, _ in named], [one.name for one in self._part.states])
         self._refuse_unknown("Wiener increments", [name for _, name in named], [one.name for one in self._part.noise])
@@ -198,17 +241,25 @@ class PartModel:
             unit = units.quotient(self._model.unit(row), self._model.unit(column))
             self._model.check_dimensions(f"the gain of `{column}` in the rate of `{row}`", gain, unit)
 
-    def drive(self, driven: Variable, expr: ca.SX) -> None:
+    @checked
+    def drive(self, driven: Variable, expr: ca.SX | float) -> None:
         """What the model has in the place of an input that the part drives."""
+        self._once(f"model.drive({driven.name}, ...)")
         self._refuse_unknown("inputs that it drives", [driven.name], [one.name for one in self._part.drives])
-        self._model.check_dimensions(f"what drives `{driven.name}`", expr, driven.unit)
+        self._model.check_dimensions(f"what drives `{driven.name}`", ca.SX(expr), driven.unit)
         self._noted.driven[driven.name] = ca.SX(expr)
 
-    def add(self, state: Variable, expr: ca.SX) -> None:
+    @checked
+    def add(self, state: Variable, expr: ca.SX | float) -> None:
         """What is added to a state of the model where curve fits see it, such as the incidence of a gust."""
-        self._model.check_dimensions(f"what is added to `{state.name}`", expr, self._model.unit(state.name))
+        self._once(f"model.add({state.name}, ...)")
+        if state.name not in self._model.names("state"):
+            message = f"a part adds to a state; `{state.name}` is not a state of the model that it joins"
+            raise FamilyError(message, suggestion(state.name, self._model.names("state")))
+        self._model.check_dimensions(f"what is added to `{state.name}`", ca.SX(expr), self._model.unit(state.name))
         self._noted.added[state.name] = ca.SX(expr)
 
+    @checked
     def outputs(self, *named: Named) -> None:
         """Quantities of the part that commands print beside the states."""
         stated = [name_of(one).removeprefix(f"{self._instance.name}_") for one in named]
@@ -219,6 +270,15 @@ class PartModel:
         """What was stated, when nothing is missing."""
         if not self._noted.rates:
             raise FamilyError("the part has no equations of motion; state them with `model.motion(...)`", line=1)
+        idle = [
+            one.name
+            for one in self._part.noise
+            if self._instance.full(one.name) not in [name for _, name in self._noted.gains]
+        ]
+        if idle:
+            raise FamilyError(
+                f"the Wiener increment `{idle[0]}` of the part has no gain: `model.diffusion(...)`", line=1
+            )
         for driven in self._part.drives:
             if driven.name not in self._noted.driven:
                 raise FamilyError(f"the part does not say what drives `{driven.name}`: `model.drive(...)`", line=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -57,6 +57,22 @@ def parse_monomial(key: str, allowed: Iterable[str]) -> Powers:
 def monomial_name(powers: Powers) -> str:
     """The monomial as a part of a Rust name: `phi_alpha_3`, `0` for the constant."""
     return "_".join(n if k == 1 else f"{n}_{k}" for n, k in powers) or "0"
+
+
+def powers_of_name(name: str, variables: Sequence[str]) -> Powers | None:
+    """The monomial of which a text is the name, in variables of this order; None if it is that of none.
+
+    >>> powers_of_name("phi_alpha_3", ("phi", "alpha"))
+    (('phi', 1), ('alpha', 3))
+    """
+    if name == "0":
+        return ()
+    pattern = "".join(rf"(?:_({re.escape(variable)})(?:_([1-9]))?)?" for variable in variables)
+    match = re.fullmatch(pattern, f"_{name}")
+    if match is None:
+        return None
+    found = zip(match.groups()[::2], match.groups()[1::2], strict=True)
+    return tuple((variable, int(exponent or 1)) for variable, exponent in found if variable is not None)
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from . import names, units
+from .checked import check_fields
 from .diagnostics import FamilyError
+from .polynomial import Powers
 
 STATUSES = ("published", "derived", "unverified", "assumed")
 
@@ -21,6 +23,12 @@ def check_texts(*texts: str) -> None:
     fault = names.fault_of_texts(*texts)
     if fault is not None:
         raise FamilyError(fault)
+
+
+def check_number(what: str, number: object) -> None:
+    """Raise `FamilyError` for what is not a finite number."""
+    if not isinstance(number, int | float) or not math.isfinite(number):
+        raise FamilyError(f"{what} is {number!r}; it must be a finite number")
 
 
 def _check(name: str, unit: str, symbol: str, doc: str) -> None:
@@ -66,6 +74,7 @@ class Variable:
     bounds: str | None = None
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check(self.name, self.unit, self.symbol, self.doc)
 
     @property
@@ -76,7 +85,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Parameter:
-    r"""A number that every table of the family has, by its key; `must` is its range.
+    r"""A number that every table of the family has, by its key; `must` is its range, `above` what it exceeds.
 
     The name in the generated code is the key in lower case; before that of a part stands the name of its instance.
 
@@ -88,11 +97,16 @@ class Parameter:
     unit: str
     doc: str
     must: str | None = None
+    above: Parameter | None = None
     prefix: str = ""
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check_key(self.key, self.unit, self.symbol, self.doc)
         _check_sign(self.must)
+        if self.above is not None and units.dimensions(self.unit) != units.dimensions(self.above.unit):
+            message = f"`{self.key}` is in `{self.unit}`; it cannot exceed `{self.above.key}`, in `{self.above.unit}`"
+            raise FamilyError(message)
 
     @property
     def name(self) -> str:
@@ -100,11 +114,25 @@ class Parameter:
         return f"{self.prefix}{self.key}".lower()
 
     def rules(self) -> tuple[Rule, ...]:
-        """Its range."""
-        if self.must is None:
-            return ()
-        reason = f"`{self.key}` ({self.doc}) {_IN_WORDS[self.must]}"
-        return (Rule(self.must.replace("_", "-"), ((1.0, (self.name,)),), self.must, reason),)
+        """Its range, and what it exceeds."""
+        own, found = (1.0, (self.name,)), []
+        if self.must is not None:
+            reason = f"`{self.key}` ({self.doc}) {_IN_WORDS[self.must]}"
+            found.append(Rule(self.must.replace("_", "-"), (own,), self.must, reason))
+        if self.above is not None:
+            other = replace(self.above, prefix=self.prefix)
+            reason = f"`{self.key}` ({self.doc}) must exceed `{other.key}` ({other.doc})"
+            found.append(Rule("above", (own, (-1.0, (other.name,))), POSITIVE, reason))
+        return tuple(found)
+
+
+def check_order(parameters: Iterable[Parameter], known: Iterable[str] = ()) -> None:
+    """Raise `FamilyError` for a parameter that must exceed one that is not declared before it."""
+    before = list(known)
+    for one in parameters:
+        if one.above is not None and one.above.name not in before:
+            raise FamilyError(f"`{one.key}` must exceed `{one.above.key}`, which is not declared before it")
+        before.append(one.name)
 
 
 @dataclass(frozen=True)
@@ -131,6 +159,7 @@ class Quantity:
     affine_by: str = ""
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check_key(self.key, self.unit, self.symbol, self.doc)
         if len(set(self.variables)) != len(self.variables):
             raise FamilyError(f"`{self.key}` depends twice on one of {', '.join(self.variables)}")
@@ -142,6 +171,15 @@ class Quantity:
     def variables(self) -> tuple[str, ...]:
         """Names of the variables of its monomials, in the order in which the name of a coefficient has them."""
         return tuple(variable.name for variable in self.depends_on)
+
+    def unit_of(self, powers: Powers) -> str:
+        """The unit of the coefficient of a monomial."""
+        of = {variable.name: variable.unit for variable in self.depends_on}
+        unit = self.unit
+        for name, exponent in powers:
+            for _ in range(exponent):
+                unit = units.quotient(unit, of[name])
+        return unit
 
 
 @dataclass(frozen=True)
@@ -163,15 +201,31 @@ class Rule:
     reason: str
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check_sign(self.must)
         if not any(factors for _, factors in self.terms):
             raise FamilyError(f"the rule `{self.name}` is about no parameter")
+        for factor, _ in self.terms:
+            check_number(f"a factor of the rule `{self.name}`", factor)
 
     def holds(self, values: Mapping[str, float]) -> bool:
         """Whether parameters of these values keep the rule; one that is not a number does not."""
         # A product overflows to infinity, a power to an exception.
         value = sum(factor * math.prod(values[name] for name in names) for factor, names in self.terms)
         return {POSITIVE: value > 0, NOT_NEGATIVE: value >= 0, NOT_ZERO: abs(value) > 0}[self.must]
+
+    def check_dimensions(self, unit_of: Callable[[str], str]) -> None:
+        """Raise `FamilyError` where its terms, of parameters in these units, have unlike dimensions."""
+        found: list[units.Dimensions] = []
+        for _, factors in self.terms:
+            unit = "1"
+            for name in factors:
+                unit = units.quotient(unit, units.quotient("1", unit_of(name)))
+            found.append(units.dimensions(unit))
+        for other in found[1:]:
+            if not units.alike(found[0], other):
+                unlike = f"{units.in_words(found[0])} and {units.in_words(other)}"
+                raise FamilyError(f"the terms of the rule `{self.name}` have unlike dimensions, {unlike}")
 
     def parameters(self) -> tuple[str, ...]:
         """The parameters that it is about, the one at which a fault is reported first."""
@@ -185,6 +239,9 @@ class Option:
     name: str
     doc: str
     values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 @dataclass(frozen=True)
@@ -207,9 +264,12 @@ class Choice:
     options: tuple[Option, ...]
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not self.options or any(len(option.values) != len(self.switches) for option in self.options):
             raise FamilyError(f"every option of `{self.name}` sets all of its switches")
         for option in self.options:
+            for value in option.values:
+                check_number(f"a value of the option `{option.name}` of `{self.name}`", value)
             if not re.fullmatch(r"[a-z][a-z0-9_]*", option.name):
                 raise FamilyError(f"the option `{option.name}` of `{self.name}` is not a lower-case identifier")
         check_texts(self.doc, *(option.doc for option in self.options))

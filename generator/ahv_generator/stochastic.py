@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from .derivation import Derivation
 from .function import Entry, NoiseStructure, Output
-
-if TYPE_CHECKING:
-    from .model import Model
 
 ITO = "in the Itô sense; derivatives are taken at frozen inputs"
 
@@ -18,7 +15,7 @@ Gains = Mapping[tuple[str, str], ca.SX]
 
 
 def add_diffusion(
-    m: Model, rates: Mapping[str, ca.SX], gains: Gains, columns_doc: str, equation: str
+    m: Derivation, rates: Mapping[str, ca.SX], gains: Gains, columns_doc: str, equation: str
 ) -> NoiseStructure:
     """Add the functions of a diffusion whose entries, by row and Wiener process, are `gains`; returns its structure."""
     gains = {at: expr for at, expr in gains.items() if not expr.is_zero()}
@@ -59,7 +56,7 @@ def add_diffusion(
     return _add_derivatives(m, gains, equation)
 
 
-def _add_derivatives(m: Model, gains: Gains, equation: str) -> NoiseStructure:
+def _add_derivatives(m: Derivation, gains: Gains, equation: str) -> NoiseStructure:
     """L^j b^k = (∂b_k/∂x) b_j, half the sum of whose diagonal turns a Stratonovich drift into that of Itô."""
     lie = {
         (row, j, k): value
@@ -92,7 +89,7 @@ def _add_derivatives(m: Model, gains: Gains, equation: str) -> NoiseStructure:
     return structure
 
 
-def _along_column(m: Model, gains: Gains, row: str, j: str, k: str) -> ca.SX:
+def _along_column(m: Derivation, gains: Gains, row: str, j: str, k: str) -> ca.SX:
     total = ca.SX(0)
     if (row, k) not in gains:
         return total
@@ -102,7 +99,7 @@ def _along_column(m: Model, gains: Gains, row: str, j: str, k: str) -> ca.SX:
     return total
 
 
-def _structure(m: Model, gains: Gains, lie: dict[tuple[str, str, str], ca.SX]) -> NoiseStructure:
+def _structure(m: Derivation, gains: Gains, lie: dict[tuple[str, str, str], ca.SX]) -> NoiseStructure:
     def column_class(column: str) -> str:
         kind = "constant"
         for (row, name), expr in gains.items():

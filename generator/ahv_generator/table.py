@@ -6,19 +6,19 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from . import emit, family_file, names, units
+from .contents import Contents, ParameterSet, TableParameter
 from .diagnostics import Faults, TableError, suggestion
 from .entries import Entries, Provenance
 from .family import Family, Outline
-from .family_file import FamilyFile
-from .joins import JOINED, PARTS, Join, Joins
+from .family_file import FamilyFile, Place
+from .joined import JOINED, PARTS
+from .joins import Joins, JoinText
+from .model import Model
 from .polynomial import MonomialError, Polynomial, Powers, Term, monomial_name, parse_monomial
 from .schema import Choice, Parameter, Quantity, Rule, Schema, Variable
-
-if TYPE_CHECKING:
-    from .model import Model
 
 _HEADER_KEYS = ("name", "family", "models", "units", "set", "source", "status", "uncertainty")
 _BOX_KEYS = ("min", "max", "unit")
@@ -26,54 +26,19 @@ CHOICES = "choices"
 
 
 @dataclass(frozen=True)
-class TableParameter:
-    """A parameter or coefficient of a table; its value stays in the table.
+class Table(Contents):
+    """A checked table: what it holds, and what it says of its models.
 
-    `kind` is one of `parameter`, `coefficient`, `required` (a coefficient that must be listed) and `switch`.
+    `schemas` are what a table of one of the models by itself holds.
     """
 
-    name: str
-    path: tuple[str, ...]
-    symbol: str
-    unit: str
-    doc: str
-    source: str
-    status: str
-    uncertainty: float
-    kind: str
-
-
-@dataclass(frozen=True)
-class ParameterSet:
-    """A named set: the parameters that it replaces, with the places of their new values."""
-
-    name: str
-    parameters: tuple[TableParameter, ...]
-
-
-@dataclass(frozen=True)
-class Table:
-    """A checked table: parameters in order, and the polynomial of each quantity.
-
-    `schemas` are what a table of one of the models by itself holds. `values` are by paths, `box` is the validity box
-    with angles in rad; `emitted` are the groups of functions that are emitted, None for all.
-    """
-
-    path: Path
     name: str
     models: tuple[str, ...]
-    units: str
     file: FamilyFile
     family: Family
-    schema: Schema
     schemas: Mapping[str, Schema]
-    parameters: tuple[TableParameter, ...]
-    polynomials: dict[str, Polynomial]
     sets: tuple[ParameterSet, ...]
-    joins: tuple[Join, ...]
-    emitted: tuple[str, ...] | None
-    values: Mapping[tuple[str, ...], float]
-    box: Mapping[str, tuple[float, float]]
+    joins: tuple[JoinText, ...]
 
     @property
     def audited(self) -> tuple[str, ...]:
@@ -90,7 +55,8 @@ class Table:
         Raises:
             TableError: with what the family's file states wrongly.
         """
-        with self.file.faults():
+        is_joined = bool(self.family.models[name].instances)
+        with self.file.faults(Place(self.path.name, (JOINED, name)) if is_joined else None):
             return self.family.build(name, self)
 
     def only_for(self, section: str, key: str) -> list[str]:
@@ -175,20 +141,20 @@ class _Reader:
         parameters = tuple(self.parameters.values())
         return Table(
             self.path,
-            name,
-            models,
             system,
-            file,
-            family,
             schema,
-            schemas,
             parameters,
             polynomials,
-            sets,
-            joins,
             emitted,
             self.entries.values,
             self.box,
+            name,
+            models,
+            file,
+            family,
+            schemas,
+            sets,
+            joins,
         )
 
     def add(self, parameter: TableParameter) -> None:
@@ -429,12 +395,8 @@ class _Polynomial:
         return powers
 
     def _coefficient(self, key: str, powers: Powers) -> list[Term]:
-        spec, unit = self.spec, self.spec.unit
-        for variable, exponent in powers:
-            for _ in range(exponent):
-                unit = units.quotient(unit, self.variables[variable].unit)
-        path = (spec.key, key)
-        provenance = self.reader.entries.entry(path, unit)
+        spec, path = self.spec, (self.spec.key, key)
+        provenance = self.reader.entries.entry(path, spec.unit_of(powers))
         if provenance is None:
             return []
         name = f"{spec.key.lower()}_{monomial_name(powers)}"

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
+from .checked import check_fields
 from .diagnostics import FamilyError
-from .schema import Parameter, Variable
+from .schema import Parameter, Variable, check_number
 
 Named = Variable | str | ca.SX
 
@@ -27,8 +28,7 @@ def name_of(named: Named | Parameter) -> str:
 
 def _check_numbers(of: Named | Parameter, **numbers: object) -> None:
     for word, number in numbers.items():
-        if not isinstance(number, int | float) or not math.isfinite(number):
-            raise FamilyError(f"`{word}` of `{name_of(of)}` is {number!r}; it must be a finite number")
+        check_number(f"`{word}` of `{name_of(of)}`", number)
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,7 @@ class Given:
     below: float | None = None
 
     def __post_init__(self) -> None:
+        check_fields(self)
         limits = {word: limit for word, limit in (("above", self.above), ("below", self.below)) if limit is not None}
         _check_numbers(self.what, default=self.default, **limits)
         above, below = limits.get("above", -math.inf), limits.get("below", math.inf)
@@ -67,6 +68,7 @@ class Sought:
     scale: float = 1.0
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check_numbers(self.unknown, start=self.start, scale=self.scale)
         if self.scale <= 0:
             raise FamilyError(f"`scale` of `{self.name}` is {self.scale!r}; it must be positive")
@@ -90,6 +92,7 @@ class Equation:
     like: tuple[Named, Named] | None = None
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check_numbers(self.row, weight=self.weight)
 
     @property

@@ -171,6 +171,19 @@ def basic(found: Dimensions) -> str:
     return "/".join(["*".join(above) or "1", *below])
 
 
+def in_words(found: Dimensions | None) -> str:
+    """Dimensions as a product of powers: `mass*length/time^2`."""
+    powers = {name.strip("[]"): power for name, power in (found or {}).items() if power}
+    above = [_power(name, power) for name, power in powers.items() if power > 0]
+    below = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(above) or "1", *below])
+
+
+def alike(a: Dimensions, b: Dimensions) -> bool:
+    """Whether two dimensions are the same, but for rounding of their exponents."""
+    return all(abs(a.get(k, 0.0) - b.get(k, 0.0)) < 1e-9 for k in {*a, *b})
+
+
 def spelled(texts: Iterable[str]) -> dict[str, str]:
     """The spelling of each unit: that in which its like, `ft/s^2` of `ft/s/s`, stands first among `texts`."""
     first: dict[UnitsContainer, str] = {}

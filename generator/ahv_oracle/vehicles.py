@@ -98,7 +98,7 @@ def winged_cone_coefficients(x: Values) -> Coefficients:
 
 
 def wang_stengel_coefficients(x: Values, *, elevator_lift: bool) -> Coefficients:
-    """Those of Wang and Stengel (2000), below beta = 1, with or without the elevator's lift of a later study."""
+    """Those of Wang and Stengel (2000), with or without the elevator's lift of a later study."""
     alpha, elevator, h = x["alpha"], x["delta_e"], x["altitude"]
     mach = x["velocity"] / (8.99e-9 * h**2 - 9.16e-4 * h + 996)
     lift = alpha * (0.493 + 1.91 / mach)
@@ -108,10 +108,12 @@ def wang_stengel_coefficients(x: Values, *, elevator_lift: bool) -> Coefficients
     damping = 80.0 / (2 * x["velocity"]) * x["pitch_rate"] * (-0.025 * mach + 1.37)
     damping = damping * (-6.83 * alpha**2 + 0.303 * alpha - 0.23)
     still = 1e-4 * (0.06 - exp(-mach / 3)) * (-6565 * alpha**2 + 6875 * alpha + 1)
+    beta = x["beta"]
+    by_mach = 0.0105 * (1 + 17 / mach)
     return Coefficients(
         lift=lift,
         drag=0.0082 * (171 * alpha**2 + 1.15 * alpha + 1) * (0.0012 * mach**2 - 0.054 * mach + 1),
-        thrust=0.0105 * (1 + 17 / mach) * 1.15 * x["beta"],
+        thrust=by_mach * 1.15 * beta if beta.real < 1 else by_mach * (1 + 0.15 * beta),
         moment=still + damping + 0.0292 * (elevator - alpha),
     )
 

@@ -48,6 +48,16 @@ def after(line: str, *more: str) -> str:
     return "\n".join([line, *(indent + one for one in more)])
 
 
+def rule(terms: str) -> str:
+    return f'{QUANTITIES}\nfrom ahv_generator.modelling import Rule\nfamily.rules(Rule("r", {terms}, POSITIVE, "z"))'
+
+
+def evaluations(name: str) -> str:
+    return after(OUTPUTS, f"    model.evaluations(model.define('{name}', x * 2, 'q', 'm', 'it'))")
+
+
+NOISE = 'Variable("w", "w", "s^0.5", "Wiener increment")'
+
 CASES = [
     # what is replaced, by what, the line at fault begins with, part of the message, part of the help
     # the file itself
@@ -60,6 +70,8 @@ CASES = [
     (OMEGA, "1 / 0\n" + OMEGA, "1 / 0", "ZeroDivisionError: division by zero", None),
     (ENERGY, after(ENERGY, "raise ValueError('no such vehicle')"), "raise", "ValueError: no such vehicle", None),
     (OMEGA, "raise SystemExit(3)\n" + OMEGA, "raise", "SystemExit: 3", None),
+    (OMEGA, "raise KeyboardInterrupt\n" + OMEGA, "raise", "KeyboardInterrupt", None),
+    (OMEGA, "class Other(BaseException):\n    pass\nraise Other('no')\n" + OMEGA, "raise", "Other: no", None),
     (OMEGA, "import os\nos._exit(3)\n" + OMEGA, "os._exit", "`os._exit(3)` would end the derivation", None),
     (OMEGA, "omega == (\n" + OMEGA, "omega == (", "SyntaxError: '(' was never closed", None),
     (OMEGA, "import sibling\n" + OMEGA, "import sibling", "No module named 'sibling'", "a family is one file"),
@@ -132,6 +144,77 @@ CASES = [
     (BOUNDS, BOUNDS + '\nwith family.only_for("pendulum"):\n    pass', "with family.only_for",
      "`pendulum` is not a model of the family", "`van_der_pol`"),
     ("POSITIVE)", '"large")', OMEGA, "`large` is not a range", None),
+    (PARAMETERS, 'other = Parameter("o", "o", "rad/s", "other", above=omega)\nfamily.parameters("more", other)',
+     "family.parameters", "`o` must exceed `omega`, which is not declared before it", None),
+    (PARAMETERS, 'other = Parameter("o", "o", "s", "other", above=omega)', "other = ",
+     "`o` is in `s`; it cannot exceed",
+     None),
+    (OUTPUTS, evaluations("slopes"), "model.evaluations", "`slopes` is a function of the generated code", None),
+    (OUTPUTS, evaluations("drift_from"), "model.evaluations", "`drift_from` is a function of the generated", None),
+    # rules
+    (QUANTITIES, rule('((1.0, ("c_positon_2",)),)'), "family.rules", "names `c_positon_2`", "`c_position_2`"),
+    (QUANTITIES, rule('((1.0, ("c_rate",)),)'), "family.rules", "names `c_rate`", "like `c_l_alpha_2`"),
+    (QUANTITIES, rule('((1.0, ("drag_0",)),)'), "family.rules", "names `drag_0`", "like `c_l_alpha_2`"),
+    (QUANTITIES, rule('((1.0, ("omga",)),)'), "family.rules", "names `omga`", "`omega`"),
+    (QUANTITIES, rule('((1.0, ("c_0",)), (-1.0, ("c_position_2",)))'), "family.rules",
+     "the terms of the rule `r` have unlike dimensions, 1/time and 1/time/length^2", None),
+    (QUANTITIES, rule('((1.0, ("omega",)), (-1.0, ()))'), "family.rules", "unlike dimensions, 1/time and 1", None),
+    (QUANTITIES, rule('((float("nan"), ("omega",)),)'), "family.rules", "a factor of the rule `r` is nan", None),
+    (QUANTITIES, rule('(("2", ("omega",)),)'), "family.rules", "`Rule`: `terms[0][0]` is the text '2'; expected is a"
+     " number", None),
+    # what is stated once
+    (OUTPUTS, after(OUTPUTS, "    model.outputs(energy)"), "model.outputs", "`model.outputs` is called twice", None),
+    ("        model.motion(" + RATES + ")", after("        model.motion(" + RATES + ")", "model.motion({position: v})"),
+     "model.motion({position: v})", "`model.motion` is called twice, on line 23 and on line 24; call it once", None),
+    (OUTPUTS, after(OUTPUTS, "    model.trim(sought=[], equations=[])"), "model.trim(sought=[Sought",
+     "`model.trim` is called twice, on line 25 and on line 26", None),
+    (OUTPUTS, after(OUTPUTS, '    model.note("a")', '    model.note("b")'), 'model.note("b")', "`model.note`", None),
+    (OUTPUTS, after(OUTPUTS, "    model.defaults()", "    model.defaults(inputs=[])"), "model.defaults(inputs", "twice",
+     None),
+    (OUTPUTS, after(OUTPUTS, "    model.deviations({})", "    model.deviations({position: 1})"),
+     "model.deviations({position", "twice", None),
+    ("inputs=(drive,))", f"inputs=(drive,), noise=({NOISE},))", MODEL,
+     "the model `van_der_pol` has the noise `w`, but no diffusion", "leave out `noise=`"),
+    ("inputs=(drive,))", f"inputs=(drive,), noise=({NOISE},))  # w", MODEL, "the noise `w`", "`model.diffusion(...)`"),
+    # what is of another type, or of another model
+    (PARAMETERS, PARAMETERS.replace("omega)", '"omega")'), "family.parameters",
+     "`Family.parameters`: `parameters[0]` is the text 'omega'; expected is a Parameter", None),
+    (BOUNDS, BOUNDS.replace("rate,", "omega,"), BOUNDS.replace("rate,", "omega,"),
+     "`Family.bounds`: `variables[1]` is the Parameter `omega`; expected is a Variable", None),
+    ("states=(position, rate)", "states=position", MODEL,
+     "`Family.model`: `states` is the Variable `position`; expected"
+     " is a list, each of it a Variable", None),
+    ("depends_on=(position,)", "depends_on=position", "damping = ",
+     "`Quantity`: `depends_on` is the Variable `position`",
+     None),
+    ('"x", "m", "displacement"', '"x", 1, "displacement"', "position = ",
+     "`Variable`: `unit` is `1`; expected is a text",
+     None),
+    (TRIM, "sought=[position, rate]", "model.trim",
+     "`Model.trim`: `sought[0]` is the Variable `position`; expected is a"
+     " Sought", None),
+    (TRIM, "sought=[Sought(3.0)]", "model.trim", "`Sought`: `unknown` is `3.0`; expected is a Variable, a text or an"
+     " expression", None),
+    (TRIM, TRIM + ', shown="energy"', "model.trim", "`Model.trim`: `shown` is the text 'energy'; expected is a list",
+     None),
+    (ENERGY, after(ENERGY, "from ahv_generator.modelling import sin", "sin(rate)"), "sin(rate)", "`sin`: `x` is the"
+     " Variable `rate`; expected is an expression or a number", "`model[...]`"),
+    (ENERGY, after(ENERGY, "2 * omega"), "2 * omega", "unsupported operand type(s) for *", "`model[...]`"),
+    (FIT, "model.fit(position)", "model.motion", "`Model.fit`: `quantity` is the Variable `position`; expected is a"
+     " Quantity or a text", None),
+    (RATES, "{position: None, rate: u}", "model.motion", "`Model.motion`: `rates[the Variable `position`]` is `None`;"
+     " expected is an expression or a number", None),
+    (RATES, "{position: v, 3: u}", "model.motion", "`Model.motion`: `rates (a key)` is `3`; expected is a Variable or a"
+     " text", None),
+    (RATES, "[v, u]", "model.motion", "`Model.motion`: `rates` is of the type `list`; expected is a dictionary", None),
+    (ENERGY, after(ENERGY, "import casadi", 'model.define("e", casadi.SX(2, 2), "e", "1", "e")'), "model.define",
+     "`Model.define`: `expr` is the expression of 2 by 2", None),
+    (ENERGY, after(ENERGY, "import casadi", 'model.define("e", casadi.SX.sym("y"), "e", "1", "e")'), "model.define",
+     "`y` is not a symbol of this model", None),
+    (ENERGY, after(ENERGY, "import casadi", 'model.define("e", casadi.SX.sym("x.position"), "e", "m", "e")'),
+     "model.define", "`x.position` is not a symbol of this model", None),
+    (OUTPUTS, after(OUTPUTS, "    model.variable('speed')"), "model.variable", "`van_der_pol` has no variable `speed`",
+     "known here"),
 ]  # fmt: skip
 
 
@@ -167,10 +250,10 @@ def test_a_file_without_a_family_is_refused(tmp_path: Path, family: str, message
 
 
 def test_an_operation_that_no_model_has_is_named(tmp_path: Path) -> None:
-    text = FAMILY.replace("(v**2 + (w * x) ** 2) / 2", "casadi.cosh(w * x / v) * v**2", 1)
+    text = FAMILY.replace("(v**2 + (w * x) ** 2) / 2", "casadi.floor(w * x / v) * v**2", 1)
     (fault,) = faults(write(tmp_path, "import casadi\n" + text))
-    assert "`cosh` is not available in a model; available: +, -, *, /, **, sin, cos, tan, asin" in fault.message
-    assert fault.line == text.splitlines().index(next(x for x in text.splitlines() if "cosh(" in x)) + 2
+    assert "`floor` is not available in a model; available: +, -, *, /, **, sin, cos, tan, asin" in fault.message
+    assert fault.line == text.splitlines().index(next(x for x in text.splitlines() if "floor(" in x)) + 2
 
 
 def test_an_unknown_variable_in_a_monomial_stands_at_its_key(tmp_path: Path) -> None:

@@ -7,10 +7,11 @@ import random
 from collections.abc import Callable, Mapping
 
 import casadi as ca
+import mpmath
 import pytest
 
 from ahv_generator.expression import ExpressionError, Tree, check_dimensions, tree
-from ahv_generator.modelling import asin, atan, atan2, fmax, fmin, log, select, tan, tanh
+from ahv_generator.modelling import acos, asin, atan, atan2, cosh, fmax, fmin, log, select, sinh, tan, tanh
 
 NAMES = ("a", "b", "c")
 A, B, C = (ca.SX.sym(name) for name in NAMES)
@@ -47,6 +48,9 @@ EXPRESSIONS = {
     "atan": atan(A * B),
     "atan2": atan2(A, B),
     "tanh": tanh(A * C),
+    "acos": acos(A / 3),
+    "sinh": sinh(A * C),
+    "cosh": cosh(A * C),
     "log": log(C),
     "abs": abs(A * B) * C,
     "min": fmin(A * C, B),
@@ -78,6 +82,27 @@ def test_a_tree_has_the_values_and_slopes_of_casadi(name: str) -> None:
         at = dict(zip(NAMES, point, strict=True))
         for found, exact in zip(trees, function(*point), strict=True):
             assert value(found, at) == pytest.approx(float(exact), rel=1e-11, abs=1e-11), (found, at)
+
+
+COMPOSED = {
+    "acos": (acos(A), mpmath.acos, 1.0),
+    "sinh": (sinh(A), mpmath.sinh, 709.0),
+    "cosh": (cosh(A), mpmath.cosh, 709.0),
+}
+
+
+@pytest.mark.parametrize("name", COMPOSED)
+def test_what_is_written_in_other_functions_is_within_4_ulp(name: str) -> None:
+    expr, exact, largest = COMPOSED[name]
+    written, draw = tree(expr), random.Random(name)
+    points = [sign * largest * 10.0 ** draw.uniform(-20, 0) for _ in range(2000) for sign in (1, -1)]
+    points += [sign * (1 - 10.0 ** draw.uniform(-15, 0)) for _ in range(2000) for sign in (1, -1)]
+    worst = 0.0
+    with mpmath.workdps(50):
+        for x in [*points, 0.0, 1.0, -1.0]:
+            true = exact(mpmath.mpf(x))
+            worst = max(worst, float(abs(value(written, {"a": x}) - true)) / math.ulp(float(true)))
+    assert 0.4 < worst <= 4.0
 
 
 def test_a_choice_is_one_operation_and_its_slope_another() -> None:
@@ -134,7 +159,9 @@ def test_like_dimensions_are_found(expr: Callable[..., ca.SX], unit: str) -> Non
         (lambda h, **_: log(h), "ln of a quantity with dimensions"),
         (lambda V, a, M, **_: select(V == a, M, 1), "`==` is not available"),
         (lambda M, **_: select(M, M, 1), "a condition compares two expressions"),
-        (lambda M, **_: ca.acos(M), "`acos` is not available in a model"),
+        (lambda M, **_: ca.acosh(M), "`acosh` is not available in a model"),
+        (lambda V, **_: ca.sinh(V), "tanh of a quantity with dimensions"),
+        (lambda V, **_: ca.acos(V), "a sum of unlike dimensions, 1 and length/time"),
     ],
 )
 def test_unlike_dimensions_are_refused(expr: Callable[..., ca.SX], message: str) -> None:

@@ -42,8 +42,8 @@ def test_the_page_lists_every_part_with_its_names() -> None:
     for name, joins, names, parameters in rows:
         path = Path(__file__).parents[1] / "ahv_generator" / "parts" / f"{name}.py"
         keys, made = PartFile(name, path).part()
-        part = made({key: Variable(key, "x", "rad", "something") for key in keys})
-        assert re.findall("`(.*?)`", joins) == keys
+        part = made({key: Variable(key, "x", "rad", "something") for key in keys}, None)
+        assert re.findall("`(.*?)`", joins) == list(keys)
         own = [one.name for one in (*part.states, *part.inputs)]
         assert [one for one in re.findall("`(.*?)`", names.partition("output")[0])] == own
         assert re.findall("`(.*?)`", parameters) == [one.key for one in part.parameters]

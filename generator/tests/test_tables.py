@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -218,6 +219,17 @@ def test_an_empty_section_lacks_what_it_should_hold(tmp_path: Path, table: str) 
             section, "no-coefficient" if section[:2] in ("C_", "N_", "T") else ""
         )
         assert (expected or "missing") in rules, section
+
+
+def test_no_model_hides_a_crate_or_a_file_of_the_package() -> None:
+    manifest = tomllib.loads((GENERATED.parent / "Cargo.toml").read_text(encoding="utf-8"))
+    taken = {crate.replace("-", "_") for crate in manifest["dependencies"]} | {"lib"}
+    models = {path.name for path in GENERATED.iterdir()}
+    pages = {path.stem.lower() for path in (GENERATED.parent / "docs").glob("*.md") if not path.stem.endswith("-table")}
+    for name in taken | (pages - models):
+        assert "choose another name" in (names.fault_of_model(name) or ""), name
+    for name in ("core", "std", "alloc", "f64", "models", "main", "test"):
+        assert names.fault_of_model(name) is None, name
 
 
 def test_the_reserved_constants_are_those_that_are_emitted() -> None:

@@ -1,204 +1,21 @@
-//! `cargo xtask book`: the project's documentation as pages that a browser shows from disk, without a network.
+//! `cargo xtask book`, by the program `book` beside this one.
 
-mod math;
-mod page;
-
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use self::math::Formulas;
-use self::page::{Page, read};
 use crate::shell;
 
-/// Folders whose Markdown makes up the book after the project's own page, with the heading of each.
-const FOLDERS: [(&str, &str); 2] = [("docs", "Guide"), ("generated/docs", "Models")];
-/// Pages of the project's root.
-const ROOT_PAGES: [&str; 2] = ["README.md", "CHANGELOG.md"];
-const LAYOUT: &str = include_str!("book/layout.html");
-const STYLE: &str = include_str!("book/style.css");
+/// Its package; built where the main workspace is.
+pub(crate) const PACKAGE: [&str; 6] = [
+    "--manifest-path",
+    "xtask/Cargo.toml",
+    "--package",
+    "book",
+    "--target-dir",
+    "target",
+];
 
-/// Pages under one heading of the contents.
-struct Part {
-    title: &'static str,
-    pages: Vec<Page>,
-}
-
-/// Builds the book, and says where it is.
+/// Builds the book.
 pub(crate) fn run() -> Result<(), String> {
     let out = shell::target().join("book");
-    let count = build(shell::root(), &out)?;
-    println!("{count} pages: {}", out.join("index.html").display());
-    Ok(())
+    let mut book = shell::cargo();
+    book.args(["run", "--quiet", "--locked"]).args(PACKAGE);
+    shell::run(book.arg("--").arg(shell::root()).arg(out))
 }
-
-/// Turns the Markdown under `root` into pages under `out`; the number of pages.
-fn build(root: &Path, out: &Path) -> Result<usize, String> {
-    let formulas = Formulas::new()?;
-    let parts = parts(root, &formulas)?;
-    let pages: Vec<&Page> = parts.iter().flat_map(|part| &part.pages).collect();
-    check_links(root, &pages)?;
-    if out.exists() {
-        fs::remove_dir_all(out).map_err(problem("empty", out))?;
-    }
-    for (position, page) in pages.iter().enumerate() {
-        let before = position.checked_sub(1).map(|before| pages[before]);
-        let after = pages.get(position + 1).copied();
-        write(
-            &out.join(&page.target),
-            &laid_out(&parts, page, before, after),
-        )?;
-    }
-    let files: BTreeSet<&PathBuf> = pages.iter().flat_map(|page| &page.files).collect();
-    for file in files {
-        let to = out.join(file);
-        make_parent(&to)?;
-        let from = root.join(file);
-        fs::copy(&from, &to).map_err(problem("copy", &from))?;
-    }
-    Ok(pages.len())
-}
-
-/// The pages of the book, read and converted.
-fn parts(root: &Path, formulas: &Formulas) -> Result<Vec<Part>, String> {
-    let mut sources = vec![(
-        "Project",
-        ROOT_PAGES
-            .iter()
-            .map(PathBuf::from)
-            .filter(|page| root.join(page).exists())
-            .collect(),
-    )];
-    for (folder, title) in FOLDERS {
-        let found = markdown(root, folder)?;
-        if !found.is_empty() {
-            sources.push((title, found));
-        }
-    }
-    let known: BTreeSet<PathBuf> = sources
-        .iter()
-        .flat_map(|(_, pages): &(_, Vec<PathBuf>)| pages.iter().cloned())
-        .collect();
-    let mut parts = Vec::new();
-    for (title, paths) in sources {
-        let pages: Result<Vec<Page>, String> = paths
-            .iter()
-            .map(|path| read(root, path, &known, formulas))
-            .collect();
-        parts.push(Part {
-            title,
-            pages: pages?,
-        });
-    }
-    Ok(parts)
-}
-
-/// The Markdown files of a folder: its README, then the others in the order in which that names them.
-fn markdown(root: &Path, folder: &str) -> Result<Vec<PathBuf>, String> {
-    let place = root.join(folder);
-    let Ok(entries) = fs::read_dir(&place) else {
-        return Ok(Vec::new());
-    };
-    let mut names = Vec::new();
-    for entry in entries {
-        let name = entry.map_err(problem("read", &place))?.file_name();
-        if let Some(name) = name.to_str().filter(|name| name.ends_with(".md")) {
-            names.push(name.to_owned());
-        }
-    }
-    let index = fs::read_to_string(place.join("README.md"))
-        .or_else(|_| fs::read_to_string(root.join("README.md")))
-        .unwrap_or_default();
-    names.sort();
-    names.sort_by_key(|name| {
-        let place = index
-            .find(&format!("({name}"))
-            .or_else(|| index.find(&format!("/{name}")));
-        (name != "README.md", place.unwrap_or(usize::MAX))
-    });
-    Ok(names
-        .into_iter()
-        .map(|name| Path::new(folder).join(name))
-        .collect())
-}
-
-/// Every link to a place in the project leads somewhere.
-fn check_links(root: &Path, pages: &[&Page]) -> Result<(), String> {
-    for page in pages {
-        for file in &page.files {
-            if !root.join(file).is_file() {
-                return Err(format!(
-                    "error: {} links to {}, which is not a file",
-                    page.source.display(),
-                    file.display()
-                ));
-            }
-        }
-        for (target, fragment) in &page.anchors {
-            let found = pages.iter().find(|other| other.source == *target);
-            if !found.is_some_and(|other| other.headings.contains(fragment)) {
-                return Err(format!(
-                    "error: {} links to #{fragment} of {}, which has no such heading",
-                    page.source.display(),
-                    target.display()
-                ));
-            }
-        }
-    }
-    Ok(())
-}
-
-/// A page with contents beside it and its neighbours below.
-fn laid_out(parts: &[Part], page: &Page, before: Option<&Page>, after: Option<&Page>) -> String {
-    let link = |to: &Page, class: &str, text: &str| {
-        let href = page::relative(&page.target, &to.target);
-        format!("<a{class} href=\"{href}\">{text}</a>")
-    };
-    let mut contents = String::new();
-    for part in parts {
-        contents += &format!("<h2>{}</h2>\n<ul>\n", part.title);
-        for other in &part.pages {
-            let here = if other.source == page.source {
-                " class=\"here\""
-            } else {
-                ""
-            };
-            contents += &format!("<li>{}</li>\n", link(other, here, short(&other.title)));
-        }
-        contents += "</ul>\n";
-    }
-    let before = before.map(|to| link(to, " class=\"before\"", &format!("← {}", to.title)));
-    let after = after.map(|to| link(to, " class=\"after\"", &format!("{} →", to.title)));
-    LAYOUT
-        .replace("{title}", &page.title)
-        .replace("{style}", STYLE)
-        .replace("{contents}", &contents)
-        .replace(
-            "{neighbours}",
-            &(before.unwrap_or_default() + &after.unwrap_or_default()),
-        )
-        // Last: a page may hold anything.
-        .replace("{page}", &page.html)
-}
-
-/// A title for the contents: what stands before its colon.
-fn short(title: &str) -> &str {
-    title.split_once(": ").map_or(title, |(name, _)| name)
-}
-
-fn write(path: &Path, text: &str) -> Result<(), String> {
-    make_parent(path)?;
-    fs::write(path, text).map_err(problem("write", path))
-}
-
-fn make_parent(path: &Path) -> Result<(), String> {
-    let parent = path.parent().unwrap_or(path);
-    fs::create_dir_all(parent).map_err(problem("make", parent))
-}
-
-fn problem(act: &str, path: &Path) -> impl FnOnce(std::io::Error) -> String {
-    move |error| format!("error: cannot {act} {}: {error}", path.display())
-}
-
-#[cfg(test)]
-mod tests;

@@ -176,15 +176,8 @@ fn change_coefficient(table: &Path) -> Result<(), String> {
 
 fn build() -> Result<PathBuf, String> {
     let mut cargo = shell::cargo();
-    // What flies needs nothing of what generates, and is built in half the time.
-    cargo.args([
-        "build",
-        "--package",
-        "ahv",
-        "--bin",
-        "ahv",
-        "--no-default-features",
-    ]);
+    // With all that generates, which was built with this program.
+    cargo.args(["build", "--package", "ahv", "--bin", "ahv"]);
     shell::run(&mut cargo)?;
     let built = shell::target()
         .join("debug")

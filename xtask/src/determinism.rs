@@ -35,7 +35,7 @@ const BUILDS: [Build; 4] = [
         name: "opt-level 1 with the features of the workspace",
         target: None,
         profile: "dev",
-        packages: &["--workspace", shell::FEATURES[0], shell::FEATURES[1]],
+        packages: &shell::STEPPERS,
         variables: &[],
     },
     Build {

@@ -29,7 +29,7 @@ const PACKAGES: [(&str, &str); 5] = [
 /// The example of which `ahv new` makes a repository; the program has its name.
 const NEW: &str = "wang-stengel";
 /// The examples whose packages are checked in.
-const CHECKED_IN: [(&str, &[commands::Question]); 2] = [
+const CHECKED_IN: [(&str, &str); 2] = [
     ("six-dof", commands::SIX_DOF),
     ("winged-cone", commands::WINGED_CONE),
 ];
@@ -116,9 +116,15 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
         fs::remove_dir_all(&folder).map_err(problem("remove", &folder))?;
     }
     println!("ahv new {NEW}");
-    let mut make = shell::cargo();
-    make.args(["run", "--quiet", "--package", "ahv-new", "--example", "new"]);
-    make.args(["--", &format!("{PLACE}/made/{NEW}")]);
+    // As `cargo test` has built it.
+    let mut cargo = shell::cargo();
+    shell::run(
+        cargo
+            .args(["build", "--example", "new"])
+            .args(shell::WORKSPACE),
+    )?;
+    let mut make = shell::program(shell::target().join("debug/examples/new"));
+    make.arg(format!("{PLACE}/made/{NEW}"));
     shell::output(make.args(["--example", NEW, "--ahv", "."]))?;
     built(&folder, &["test", "--quiet"])?;
     let own = Own::new(NEW, &folder);
@@ -131,7 +137,7 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
 /// An example that is checked in with its package builds as it is, and answers as published.
 fn checked_in(
     example: &str,
-    questions: &[commands::Question],
+    questions: &str,
     answers: &Answers,
 ) -> Result<(), String> {
     let folder = shell::root().join("examples").join(example);

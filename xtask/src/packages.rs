@@ -5,13 +5,11 @@ use serde_json::Value;
 use crate::shell;
 
 /// How the workspace builds, so that what others wrote is not built a second time.
-const AS_THE_WORKSPACE: [&str; 6] = [
+const AS_THE_WORKSPACE: [&str; 4] = [
     "--config",
     "profile.dev.opt-level=1",
     "--config",
-    "profile.dev.debug='line-tables-only'",
-    "--config",
-    "profile.dev.package.'*'.debug=false",
+    "profile.dev.debug=false",
 ];
 
 /// Packages every member that may be published, and with `build` builds each from its package.

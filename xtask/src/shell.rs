@@ -21,10 +21,24 @@ pub(crate) const BENCH: &str = "bench/Cargo.toml";
 /// The workspace of the bindings of Python.
 pub(crate) const BINDINGS: &str = "crates/ahv-python/Cargo.toml";
 
-/// All features but one: a writer of Parquet takes long to build.
-pub(crate) const FEATURES: [&str; 2] = [
+/// The packages of the main workspace but for [`STEPPERS`]. Of what they use they have the features that a stranger's `ahv` has
+/// of it, and so both are built once.
+pub(crate) const WORKSPACE: [&str; 5] = [
+    "--workspace",
+    "--exclude",
+    "ahv-integrate",
+    "--exclude",
+    "ahv-steppers",
+];
+
+/// The packages that need `rand`, which no other has.
+pub(crate) const STEPPERS: [&str; 6] = [
+    "--package",
+    "ahv-integrate",
+    "--package",
+    "ahv-steppers",
     "--features",
-    "ahv-core/std,ahv-integrate/rand,ahv-models/nalgebra",
+    "ahv-core/std",
 ];
 
 /// The cargo that runs this program, at the repository's root.

@@ -39,15 +39,18 @@ enum Outcome {
 
 type Step = (&'static str, fn() -> Result<Outcome, String>);
 
-const STEPS: [Step; 28] = [
+const STEPS: [Step; 32] = [
     ("format", || cargo(&["fmt", "--all", "--check"], &[], &[])),
     ("format of xtask", || {
-        cargo(&["fmt", "--check"], &XTASK[..2], &[])
+        cargo(&["fmt", "--all", "--check"], &XTASK[..2], &[])
     }),
     ("clippy", || {
+        cargo(&["clippy", "--workspace", "--all-targets"], &[], &DENY)
+    }),
+    ("clippy without generation", || {
         cargo(
-            &["clippy", "--workspace", "--all-targets"],
-            &shell::FEATURES,
+            &["clippy", "--package", "ahv", "--no-default-features"],
+            &[],
             &DENY,
         )
     }),
@@ -95,12 +98,19 @@ const STEPS: [Step; 28] = [
         module(&["pytest", "--quiet", "--numprocesses", "2"])
     }),
     ("generate --check", generate_check),
-    ("cargo test", || {
-        cargo(&["test", "--workspace"], &shell::FEATURES, &[])
+    ("cargo test", || cargo(&["test"], &shell::WORKSPACE, &[])),
+    ("cargo test of the steppers", || {
+        cargo(&["test"], &shell::STEPPERS, &[])
     }),
     ("audit", accuracy),
     ("determinism", || {
         determinism::run().map(|()| Outcome::Passed)
+    }),
+    ("clippy of the book", || {
+        cargo(&["clippy", "--all-targets"], &book::PACKAGE, &DENY)
+    }),
+    ("cargo test of the book", || {
+        cargo(&["test"], &book::PACKAGE, &[])
     }),
     ("book", || book::run().map(|()| Outcome::Passed)),
     ("cargo test of xtask", || cargo(&["test"], &XTASK, &[])),
@@ -220,11 +230,7 @@ fn generate_check() -> Result<Outcome, String> {
 /// The audit of accuracy with as few points as a gate can wait for, by the program that `cargo test` has built. What the oracle
 /// says of them stays in the cache until oracle or table change; what is generated is always compared with it.
 fn accuracy() -> Result<Outcome, String> {
-    cargo(
-        &["build", "--workspace", "--bin", "audit"],
-        &shell::FEATURES,
-        &[],
-    )?;
+    cargo(&["build", "--bin", "audit"], &shell::WORKSPACE, &[])?;
     let mut audit = shell::program(shell::target().join("debug/audit"));
     audit.args(["--points", "100", "--root"]).arg(shell::root());
     if let Some(cache) = python::cache()? {

@@ -60,7 +60,14 @@ pub(crate) fn run() -> Result<(), String> {
     scipy.args(["--out", "../tests/vectors/dcom.flights.txt"]);
     shell::run(scipy.current_dir(shell::root().join("generator")))?;
     println!("tests/vectors/dcom.flights.txt");
-    for name in ["riccati", "elementary", "transcendental", "normals"] {
+    for name in [
+        "riccati",
+        "elementary",
+        "transcendental",
+        "normals",
+        "gas_dynamics",
+        "fpm",
+    ] {
         let mut alone = shell::program(&python);
         let out = format!("tests/vectors/{name}.txt");
         alone.args(["-m", "ahv_oracle", name, "--out", &format!("../{out}")]);

@@ -1,6 +1,7 @@
 //! The problem of the paper's section 5.1: ensembles of three modes and of the coloured noise that stands for each.
 
 mod own;
+pub(crate) mod problem;
 
 pub(crate) use own::SIDE_BY_SIDE;
 
@@ -12,26 +13,13 @@ use serde_json::{Value, json};
 use crate::arrays::Arrays;
 use crate::ensembles::{Ensembles, GXX};
 use crate::moments;
-use crate::monte_carlo::THREADS;
+use crate::monte_carlo::problem::THREADS;
 use crate::race::{Finish, NUMPY, Runner, race};
 use crate::table::Table;
+use problem::{DT, MODES, RUNS, Rates, STEPS, Sums};
 
-/// Number of modes.
-pub(crate) const MODES: usize = SETS.len();
-/// Step size in s.
-pub(crate) const DT: f64 = 1e-3;
-/// Runs of each mode.
-pub(crate) const RUNS: usize = 10_000;
-/// Steps of a turn; the paper's runs have 10 000.
-pub(crate) const STEPS: usize = 200;
 /// Mode-steps of a turn.
 const UNITS: f64 = (MODES * RUNS * STEPS) as f64;
-
-/// Stiffness, damping, intensity of the noise, decay of χ and its intensity.
-pub(crate) type Rates = [f64; 5];
-
-/// After each step, sums over runs of η, η², χ and χ².
-pub(crate) type Sums = [[f64; 4]; STEPS];
 
 /// The parameters of the three modes.
 pub(crate) fn parameters() -> [Parameters<f64>; MODES] {
@@ -57,19 +45,6 @@ fn rates() -> [Rates; MODES] {
             noise.chi,
         ]
     })
-}
-
-/// Parts of each mode, part by part, added up mode by mode.
-pub(crate) fn added(parts: &[Sums]) -> Vec<Sums> {
-    let mut total = vec![[[0.0; 4]; STEPS]; MODES];
-    for part in parts.chunks_exact(MODES) {
-        for (total, part) in total.iter_mut().flatten().zip(part.iter().flatten()) {
-            for (total, part) in total.iter_mut().zip(part) {
-                *total += part;
-            }
-        }
-    }
-    total
 }
 
 /// Means and standard deviations of η and χ of each mode at the end.

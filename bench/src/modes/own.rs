@@ -9,7 +9,8 @@ use ahv_models::flexible_mode::{Input, Model, Noise, State};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use super::{DT, MODES, RUNS, STEPS, Sums, UNITS, added, ends, parameters};
+use super::problem::{DT, MODES, RUNS, STEPS, Sums, added};
+use super::{UNITS, ends, parameters};
 use crate::lanes::Exact;
 use crate::race::Runner;
 use crate::threads::pool;

@@ -9,7 +9,8 @@ use ahv_models::sdcom::{Input, Model, Noise, State};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use super::{DT, Flight, MEMBERS, STATES, STEPS, UNITS};
+use super::UNITS;
+use super::problem::{DT, Flight, MEMBERS, STATES, STEPS};
 use crate::moments;
 use crate::race::Runner;
 use crate::threads::pool;

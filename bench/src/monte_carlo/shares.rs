@@ -7,8 +7,9 @@ use ahv_analysis::monte_carlo::{LANES, Mode};
 use ahv_integrate::{NormalLanes, Precision};
 use ahv_models::sdcom::Noise;
 
+use super::UNITS;
 use super::own::{experiment, fly};
-use super::{Flight, MEMBERS, STEPS, UNITS};
+use super::problem::{Flight, MEMBERS, STEPS};
 use crate::race::{Finish, Runner, race};
 use crate::table::Table;
 use crate::threads::pool;

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::flights::Flight;
 use super::library::Step;
-use crate::timing::{Spread, interleave};
+use crate::rounds::{Spread, interleave};
 
 /// Steps of a turn.
 pub(crate) const COUNT: usize = 1000;

@@ -15,8 +15,8 @@ use serde_json::Value;
 
 use super::flights::{END, Flight, Flights, STATES};
 use super::solver::{Request, Solution, Solver, steps};
-use crate::candidates;
 use crate::kernel::{self, Function};
+use crate::layout;
 
 /// The functions of the library, by name.
 pub(crate) struct Steps {
@@ -47,7 +47,7 @@ impl Steps {
 
     /// The function `name`.
     pub(crate) fn step(&self, name: &str) -> Result<Step, String> {
-        let work = candidates::work(self.said.get(name).unwrap_or(&Value::Null))?;
+        let work = layout::work(self.said.get(name).unwrap_or(&Value::Null))?;
         // SAFETY: all functions of CasADi's C have this type.
         let function = unsafe { self.library.get::<Function>(name) };
         let function = function.map_err(|error| format!("error: CasADi has no {name}: {error}"))?;

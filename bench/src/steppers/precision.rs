@@ -7,7 +7,7 @@ use super::named;
 use super::own::REFERENCE;
 use super::service::{CVODES, SCIPY};
 use super::solver::{Request, Solution, Solver};
-use crate::timing::Spread;
+use crate::rounds::Spread;
 
 /// The errors at which solvers are compared, in units of the scales.
 pub(crate) const TARGETS: [f64; 2] = [1e-6, 1e-9];

@@ -116,6 +116,8 @@ pub trait AnyModel: Send + Sync {
     /// Whether two vectors of parameters make the same model.
     fn is_same(&self, p: &[f64], q: &[f64]) -> bool;
 
+    /// As [`GeneratedModel::fault`].
+    fn fault(&self, p: &[f64], x: &[f64], u: &[f64]) -> Option<String>;
     /// The drift f(x, u).
     fn drift(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64>;
     /// The drift at many points: writes that of each row of `x` into the row of `rates` in its place, with the bits of
@@ -129,6 +131,8 @@ pub trait AnyModel: Send + Sync {
     fn diffusion(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64>;
     /// The quantities that people look at.
     fn output_values(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64>;
+    /// The derivatives of the outputs by the parameters.
+    fn output_parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64>;
     /// As [`crate::trim::trim`].
     ///
     /// # Errors

@@ -2,17 +2,18 @@
 
 mod balance;
 mod blocks;
+pub(crate) mod eigen;
 mod modes;
 mod staircase;
 mod zeros;
 
 use ahv_core::ModeOfMotion;
-use faer::Mat;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::linearize::LinearSystem;
 use balance::{balance, similar};
 use blocks::blocks;
+use eigen::Eigen;
 pub use zeros::{Decoupling, Zero, Zeros, zeros};
 
 /// A pole with the mode that it belongs to.
@@ -29,7 +30,7 @@ pub struct Pole {
 /// Why there are no poles or zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolesError {
-    /// The QR or QZ iteration did not converge, as with entries that are not finite.
+    /// The QR iteration did not converge, as with entries that are not finite.
     #[error("the eigenvalues did not converge")]
     NoConvergence,
     /// The rank of the transfer matrix cannot be told from rounding.
@@ -84,13 +85,10 @@ type Found = (Complex<f64>, DVector<f64>);
 /// The poles of some states.
 fn of_block(balanced: &DMatrix<f64>, block: &[usize]) -> Result<Vec<Found>, PolesError> {
     let n = block.len();
-    let eigen = Mat::from_fn(n, n, |row, column| balanced[(block[row], block[column])])
-        .eigen()
-        .map_err(|_| PolesError::NoConvergence)?;
-    let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-    let participation = participation(&DMatrix::from_fn(n, n, |row, column| {
-        vectors[(row, column)]
-    }));
+    let matrix = DMatrix::from_fn(n, n, |row, column| balanced[(block[row], block[column])]);
+    let Eigen { values, vectors } =
+        eigen::values_and_vectors(&matrix).ok_or(PolesError::NoConvergence)?;
+    let participation = participation(&vectors);
     let pole = |index: usize| {
         let mut of_all = DVector::zeros(balanced.nrows());
         for (row, &state) in block.iter().enumerate() {

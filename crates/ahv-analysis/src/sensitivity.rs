@@ -4,20 +4,25 @@
 //! with the parameter and with the trim: central differences of the exact Jacobians along both. A root of
 //! det(S − λM) = 0 moves by wᴴ dS v / wᴴ M v with its left and right null vectors w and v.
 
-use faer::{Mat, MatRef};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, FullPivLU};
 
 /// Passes of the scaling of rows and columns.
 const PASSES: usize = 6;
 
+/// A difference of up to so many roundings of its terms counts as 0.
+const ROUNDINGS: f64 = 100.0;
+
 /// Smallest |wᴴ M v| / (|w| |M v|) of a root that is told apart from others.
 const DISTINCT: f64 = 1e-10;
+
+/// A vector of complex numbers.
+type ComplexVector = DVector<Complex<f64>>;
 
 /// A root λ of det(S − λM) = 0 with its null vectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RootVectors {
-    left: DVector<Complex<f64>>,
-    right: DVector<Complex<f64>>,
+    left: ComplexVector,
+    right: ComplexVector,
     weight: Complex<f64>,
 }
 
@@ -28,7 +33,15 @@ impl RootVectors {
     /// `None` for a root that is not simple, or not finite.
     pub fn new(matrix: &DMatrix<f64>, mass: &DMatrix<f64>, root: Complex<f64>) -> Option<Self> {
         let complex = |entry: f64| Complex::new(entry, 0.0);
-        let mut shifted = matrix.map(complex) - mass.map(complex) * root;
+        // What rounding leaves of a difference would grow when rows and columns are scaled.
+        let mut shifted = matrix.zip_map(mass, |entry, mass| {
+            let (entry, subtracted) = (complex(entry), root * mass);
+            let (difference, size) = (entry - subtracted, entry.l1_norm() + subtracted.l1_norm());
+            if difference.l1_norm() <= ROUNDINGS * f64::EPSILON * size {
+                return Complex::ZERO;
+            }
+            difference
+        });
         if shifted
             .iter()
             .any(|z| !(z.re.is_finite() && z.im.is_finite()))
@@ -36,15 +49,9 @@ impl RootVectors {
             return None;
         }
         let (rows, columns) = balance(&mut shifted);
-        let svd = Mat::from_fn(shifted.nrows(), shifted.ncols(), |i, j| shifted[(i, j)])
-            .svd()
-            .ok()?;
-        // Singular values descend.
-        let least = shifted.nrows().checked_sub(1)?;
-        let scaled = |vectors: MatRef<'_, Complex<f64>>, scale: &DVector<f64>| {
-            DVector::from_fn(scale.len(), |i, _| vectors[(i, least)] * scale[i])
-        };
-        let (left, right) = (scaled(svd.U(), &rows), scaled(svd.V(), &columns));
+        let (left, right) = null_vectors(shifted)?;
+        let left = left.component_mul(&rows.map(complex));
+        let right = right.component_mul(&columns.map(complex));
         let carried = mass.map(complex) * &right;
         let weight = left.dotc(&carried);
         let distinct = weight.re.hypot(weight.im) > DISTINCT * left.norm() * carried.norm();
@@ -60,6 +67,25 @@ impl RootVectors {
         let moved = change.map(|entry| Complex::new(entry, 0.0)) * &self.right;
         self.left.dotc(&moved) / self.weight
     }
+}
+
+/// Left and right null vector of a square matrix that is singular but for rounding: with complete pivoting the last pivot is
+/// the one that counts as 0. `None` where another one is 0, too.
+fn null_vectors(matrix: DMatrix<Complex<f64>>) -> Option<(ComplexVector, ComplexVector)> {
+    let rest = matrix.nrows().checked_sub(1)?;
+    let factors = FullPivLU::new(matrix);
+    let (lower, upper) = (factors.l(), factors.u());
+    let known = -upper.view((0, rest), (rest, 1));
+    let right = upper
+        .view((0, 0), (rest, rest))
+        .solve_upper_triangular(&known)?;
+    let mut right = right.column(0).push(Complex::ONE);
+    factors.q().inv_permute_rows(&mut right);
+    let mut left = DVector::zeros(rest + 1);
+    left[rest] = Complex::ONE;
+    let mut left = lower.adjoint().solve_upper_triangular(&left)?;
+    factors.p().inv_permute_rows(&mut left);
+    Some((left, right))
 }
 
 /// Scales rows and columns until their largest entries are near 1, and gives the factors (Ruiz 2001).

@@ -43,15 +43,15 @@ pub fn models() -> impl Iterator<Item = &'static dyn AnyModel> {
 
 /// Runs a command of the models by the words of its line, without the program's name.
 ///
-/// `generate` and `new` speak to a terminal alone: they are a request that fails.
+/// `diff`, `generate`, `new` and `table` speak to a terminal alone: they are a request that fails.
 pub fn tell(words: Vec<String>, extra: &[ExtraCommand]) -> Told {
     let (end, said) = heard(|| match asked(line(words), extra) {
         Err(wrong) => Err(refusal(&wrong)),
         Ok(Asked::General(Command::Model(command))) => command.run(),
         Ok(Asked::Extra(extra, matches)) => (extra.run)(&matches),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Generate(_) | Command::New(_))) => Err(Failure::Request(
-            "generate and new are commands of a terminal".to_owned(),
+        Ok(Asked::General(_)) => Err(Failure::Request(
+            "diff, generate, new and table are commands of a terminal".to_owned(),
         )),
     });
     Told {

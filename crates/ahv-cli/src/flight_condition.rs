@@ -26,6 +26,9 @@ pub(crate) struct FlightCondition {
     input: Vec<String>,
 }
 
+/// A state and an input.
+pub(crate) type Point = (Vec<f64>, Vec<f64>);
+
 /// The given states and outputs of all models, each once, with their unit and SI unit.
 fn all_given() -> Vec<(Given, [&'static str; 2])> {
     let mut all: Vec<(Given, [&str; 2])> = Vec::new();
@@ -211,6 +214,48 @@ impl FlightCondition {
             .check()
             .map_err(|error| outside_domain(&error, vehicle))?;
         Ok((flight, inputs))
+    }
+
+    /// The steady state that is asked for, and its trim; or the state of the assignments `texts` of --state, which is no trim, with
+    /// the inputs that are given.
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Request`] for bad input, [`Failure::Numeric`] if there is no trim.
+    pub(crate) fn point(
+        &self,
+        vehicle: &Vehicle,
+        texts: &[String],
+    ) -> Result<(SteadyState, Point), Failure> {
+        if texts.is_empty() {
+            let flight = self.flight(vehicle)?;
+            let trim = vehicle.trim(&flight)?;
+            return Ok((flight, (trim.state, trim.input)));
+        }
+        let (mut flight, inputs) = self.flight_and_inputs(vehicle)?;
+        let states = Assignments::parse("--state", texts, vehicle.states)?;
+        if let Some(name) = self.names().find(|name| states.get(name).is_some()) {
+            return Err(Failure::Request(format!(
+                "--state: {name} is given twice; leave --{name} out"
+            )));
+        }
+        let mut state = vec![0.0; vehicle.states.len()];
+        let mut input = vec![0.0; vehicle.inputs.len()];
+        for (name, value) in flight.given().collect::<Vec<_>>() {
+            let value = states.get(name).unwrap_or(value);
+            flight = flight.with(name, value);
+            let index = vehicle.states.index_of(name);
+            if let Some(component) = index.and_then(|index| state.get_mut(index)) {
+                *component = value;
+            }
+        }
+        states.apply(&mut state);
+        inputs.apply(&mut input);
+        vehicle
+            .moves(&state)
+            .map_err(|why| Failure::Request(format!("--state: {why}")))?;
+        vehicle.warn_outside(&state, &input);
+        Ok((flight, (state, input)))
     }
 
     /// The inputs that are given.

@@ -27,11 +27,14 @@
 mod assignment;
 mod covariance;
 pub mod csv_file;
+#[cfg(feature = "generate")]
+mod diff;
 mod disperse;
 pub mod embedded;
 pub mod failure;
 mod flight_condition;
 mod flights;
+mod forces;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
@@ -54,6 +57,8 @@ pub mod signals;
 mod simulate;
 pub mod steps;
 mod table;
+#[cfg(feature = "generate")]
+mod tables;
 mod trim;
 pub mod units;
 pub mod vehicle;
@@ -81,6 +86,10 @@ enum Command {
     Generate(generate::Arguments),
     #[cfg(feature = "generate")]
     New(new::Arguments),
+    #[cfg(feature = "generate")]
+    Table(tables::Arguments),
+    #[cfg(feature = "generate")]
+    Diff(diff::Arguments),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -90,6 +99,7 @@ enum Command {
 enum ModelCommand {
     Covariance(covariance::Arguments),
     Disperse(disperse::Arguments),
+    Forces(forces::Arguments),
     Linearize(linearize::Arguments),
     Lqr(lqr::Arguments),
     #[command(name = "montecarlo")]
@@ -140,8 +150,12 @@ pub fn run_line<L: ModelList>(
         Ok(Asked::General(Command::Generate(arguments))) => generate::run(&arguments),
         #[cfg(feature = "generate")]
         Ok(Asked::General(Command::New(arguments))) => new::run(&arguments),
-        Ok(Asked::General(Command::Model(command))) => listening(|| command.run()),
-        Ok(Asked::Extra(extra, matches)) => listening(|| (extra.run)(&matches)),
+        #[cfg(feature = "generate")]
+        Ok(Asked::General(Command::Table(arguments))) => listening(|| tables::run(&arguments)),
+        #[cfg(feature = "generate")]
+        Ok(Asked::General(Command::Diff(arguments))) => listening(|| done(diff::run(&arguments))),
+        Ok(Asked::General(Command::Model(command))) => listening(|| done(command.run())),
+        Ok(Asked::Extra(extra, matches)) => listening(|| done((extra.run)(&matches))),
     }
 }
 
@@ -184,16 +198,21 @@ fn answer(asked: &clap::Error) -> u8 {
 fn command(extra: &[ExtraCommand]) -> clap::Command {
     let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
     command.mut_subcommands(|command| match command.get_name() {
-        "generate" | "new" => command,
+        "diff" | "generate" | "new" | "table" => command,
         _ => command.display_order(1),
     })
 }
 
-fn listening(run: impl FnOnce() -> Result<(), Failure>) -> u8 {
+fn listening(run: impl FnOnce() -> Result<u8, Failure>) -> u8 {
     match signals::listen().and_then(|()| run()) {
-        Ok(()) => 0,
+        Ok(code) => code,
         Err(failure) => failure.report(signals::exit_code()),
     }
+}
+
+/// The exit code of what has no other than that it succeeds.
+fn done(result: Result<(), Failure>) -> Result<u8, Failure> {
+    result.map(|()| 0)
 }
 
 impl ModelCommand {
@@ -201,6 +220,7 @@ impl ModelCommand {
         match self {
             Self::Covariance(arguments) => covariance::run(arguments),
             Self::Disperse(arguments) => disperse::run(arguments),
+            Self::Forces(arguments) => forces::run(arguments),
             Self::Linearize(arguments) => linearize::run(arguments),
             Self::Lqr(arguments) => lqr::run(arguments),
             Self::MonteCarlo(arguments) => monte_carlo::run(arguments),

@@ -10,7 +10,6 @@ use clap::Args;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use crate::assignment::Assignments;
 use crate::csv_file::CsvFile;
 use crate::failure::{Failure, complain, print};
 use crate::flight_condition::FlightCondition;
@@ -64,14 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn about_point(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
-    let (flight, point) = match arguments.state.as_slice() {
-        [] => {
-            let flight = arguments.condition.flight(vehicle)?;
-            let trim = vehicle.trim(&flight)?;
-            (flight, (trim.state, trim.input))
-        }
-        texts => given(arguments, vehicle, texts)?,
-    };
+    let (flight, point) = arguments.condition.point(vehicle, &arguments.state)?;
     let system = vehicle.linear((&point.0, &point.1), &arguments.inputs, &arguments.outputs)?;
     for why in system.inputs.iter().filter_map(|input| vehicle.idle(input)) {
         complain(&format!("note: {why}"));
@@ -84,38 +76,6 @@ fn about_point(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> 
         true => output::print_json(&json),
         false => print(&text(vehicle, &point, &system)),
     }
-}
-
-/// A steady state that is asked for, and a state with an input.
-type At = (SteadyState, (Vec<f64>, Vec<f64>));
-
-/// The state that is given, which is no trim.
-fn given(arguments: &Arguments, vehicle: &Vehicle, texts: &[String]) -> Result<At, Failure> {
-    let (mut flight, inputs) = arguments.condition.flight_and_inputs(vehicle)?;
-    let states = Assignments::parse("--state", texts, vehicle.states)?;
-    let mut flags = arguments.condition.names();
-    if let Some(name) = flags.find(|name| states.get(name).is_some()) {
-        return Err(Failure::Request(format!(
-            "--state: {name} is given twice; leave --{name} out"
-        )));
-    }
-    let mut state = vec![0.0; vehicle.states.len()];
-    let mut input = vec![0.0; vehicle.inputs.len()];
-    for (name, value) in flight.given().collect::<Vec<_>>() {
-        let value = states.get(name).unwrap_or(value);
-        flight = flight.with(name, value);
-        let index = vehicle.states.index_of(name);
-        if let Some(component) = index.and_then(|index| state.get_mut(index)) {
-            *component = value;
-        }
-    }
-    states.apply(&mut state);
-    inputs.apply(&mut input);
-    vehicle
-        .moves(&state)
-        .map_err(|why| Failure::Request(format!("--state: {why}")))?;
-    vehicle.warn_outside(&state, &input);
-    Ok((flight, (state, input)))
 }
 
 impl Vehicle {

@@ -177,6 +177,17 @@ pub(crate) struct PointJson {
 }
 
 impl VehicleArgs {
+    /// A model with a table, and all else as that has it.
+    pub(crate) fn of(model: &dyn AnyModel, table: &Path) -> Self {
+        Self {
+            model: model.name().to_owned(),
+            table: Some(table.to_owned()),
+            set: None,
+            choices: Vec::new(),
+            units: None,
+        }
+    }
+
     /// The model that is asked for.
     ///
     /// # Errors

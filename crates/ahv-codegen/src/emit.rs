@@ -9,6 +9,7 @@ use crate::manifest::{Earlier, Manifest, sha256};
 use crate::options::{Options, Target};
 use crate::rust;
 use crate::subject::Subject;
+use crate::table_schema;
 use crate::values::Values;
 use crate::{EmitError, Table, Tree};
 
@@ -55,6 +56,11 @@ pub fn emit_again(
             EmitError::Mismatch(format!("there is no IR for table `{}`", table.name))
         })?;
         let mut document = Document::parse(&table.name, text)?;
+        if options.target == Target::Rust {
+            // In the units that the table has, whatever those of the package.
+            let schema = table_schema::schema(&document);
+            tree.insert(format!("schema/{}.json", table.name), schema);
+        }
         let values = Values::read(table, &mut document, options.units)?;
         tree.insert(format!("ir/{}.json", table.name), text.clone());
         read.push((table, document, values));

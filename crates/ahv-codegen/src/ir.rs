@@ -8,12 +8,12 @@ use crate::EmitError;
 
 mod table;
 pub use table::{
-    Choice, ChoiceOption, EntryKind, Parameter, ParameterSet, Replacement, Rule, Sign, Status,
-    UnitSystem, Units,
+    Choice, ChoiceOption, EntryKind, Fit, FitVariable, Parameter, ParameterSet, Replacement, Rule,
+    Sign, Status, UnitSystem, Units,
 };
 
 /// The schema that this crate reads.
-pub const SCHEMA_VERSION: u64 = 4;
+pub const SCHEMA_VERSION: u64 = 5;
 
 /// The models of one table.
 #[derive(Debug, Deserialize)]
@@ -35,6 +35,8 @@ pub struct Document {
     pub parameters: Vec<Parameter>,
     /// Entries of the validity box.
     pub validity: Vec<Variable>,
+    /// What the monomials of its polynomials may be.
+    pub fits: Vec<Fit>,
     /// What the numbers of the table must obey.
     pub rules: Vec<Rule>,
     /// The models.

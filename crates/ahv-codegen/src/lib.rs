@@ -34,6 +34,7 @@ mod schedule;
 mod shape;
 mod subject;
 mod table;
+mod table_schema;
 mod template;
 #[cfg(test)]
 mod testing;

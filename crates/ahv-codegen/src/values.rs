@@ -136,6 +136,12 @@ impl Values {
             let factor = from.convert(&mut variable.unit)?;
             (*min, *max) = (*min * factor, *max * factor);
         }
+        for fit in &mut document.fits {
+            from.convert(&mut fit.unit)?;
+            for variable in &mut fit.variables {
+                from.convert(&mut variable.unit)?;
+            }
+        }
         for model in &mut document.models {
             for variable in model.bases.values_mut().flatten() {
                 let factor = from.convert(&mut variable.unit)?;

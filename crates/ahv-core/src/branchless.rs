@@ -70,16 +70,6 @@ impl<T: Lane> Real for Branchless<T> {
     }
 
     #[inline(always)]
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
-    #[inline(always)]
     fn exp(self) -> Self {
         let exponent = if self.0.is_moderate_exponent() {
             self.0
@@ -132,11 +122,6 @@ impl<T: Lane> Real for Branchless<T> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
-    }
-
-    #[inline(always)]
-    fn recip(self) -> Self {
-        Self(self.0.recip())
     }
 
     #[inline(always)]

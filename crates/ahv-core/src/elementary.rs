@@ -11,5 +11,6 @@ pub(crate) mod arc;
 pub(crate) mod double;
 pub(crate) mod logarithm;
 mod pair;
+mod reduction;
 pub(crate) mod single;
 pub(crate) mod tangent;

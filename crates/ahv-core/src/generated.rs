@@ -1,6 +1,6 @@
 //! What a generated model says of itself: all that a command or an analysis needs to know of a model that it never saw.
 
-use core::fmt::Debug;
+use core::fmt::{Debug, Display};
 
 use crate::{
     Bounds, ColouredNoise, DifferentiableModel, DifferentiableNoise, ParameterSet, Provenance,
@@ -136,6 +136,12 @@ pub trait GeneratedModel:
             other.set(index, value + 1.0)
         });
         changed.is_some() && Self::with_parameters(&other) != Self::with_parameters(parameters)
+    }
+
+    /// Why the model has no rates at (x, u), where there is more to say than that they are not numbers.
+    fn fault(&self, x: &Self::State, u: &Self::Input) -> Option<impl Display> {
+        let _ = (x, u);
+        None::<&'static str>
     }
 
     /// ∂f/∂p at (x, u): a vector over the rows of f, each a vector over the parameters. The unit of an entry is that of its

@@ -148,16 +148,6 @@ impl<T: Lane, const N: usize> Real for Lanes<T, N> {
     }
 
     #[inline(always)]
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.sin_cos().1
-    }
-
-    #[inline(always)]
     fn exp(self) -> Self {
         if self.all(T::is_moderate_exponent) {
             self.map(T::moderate_exp)
@@ -208,11 +198,6 @@ impl<T: Lane, const N: usize> Real for Lanes<T, N> {
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.map(Real::sqrt)
-    }
-
-    #[inline(always)]
-    fn recip(self) -> Self {
-        self.map(Real::recip)
     }
 
     #[inline(always)]

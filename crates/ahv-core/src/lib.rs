@@ -60,6 +60,7 @@ extern crate std;
 
 mod bounds;
 mod branchless;
+mod dual;
 mod elementary;
 mod generated;
 mod lanes;
@@ -77,6 +78,7 @@ mod vector;
 
 pub use bounds::{Bounds, Outside, first_outside};
 pub use branchless::Branchless;
+pub use dual::Dual;
 pub use generated::{
     Component, CountVisitor, Equation, GeneratedModel, Given, ModeOfMotion, ModelList,
     ModelVisitor, ParameterSetOf, Sought, TrimProblem,
@@ -93,6 +95,7 @@ pub use provenance::{Provenance, Status};
 pub use real::Real;
 pub use shown::Shown;
 pub use table::{
-    Choice, ChoiceOption, Entry, EntryKind, Interval, ParameterSet, Rule, Sign, Table, Term,
+    Choice, ChoiceOption, Entry, EntryKind, Fit, FitVariable, Interval, ParameterSet, Rule, Sign,
+    Table, Term,
 };
 pub use vector::Vector;

@@ -34,12 +34,16 @@ pub trait DifferentiableModel: Model {
         u: &Self::Input,
     ) -> (Self::StateJacobian, Self::InputJacobian);
 
-    /// f, ∂f/∂x and ∂f/∂u at (x, u), for less than one after the other.
+    /// f, ∂f/∂x and ∂f/∂u at (x, u), for less than one after the other where the model has a way.
+    #[inline]
     fn drift_and_jacobians(
         &self,
         x: &Self::State,
         u: &Self::Input,
-    ) -> (Self::State, Self::StateJacobian, Self::InputJacobian);
+    ) -> (Self::State, Self::StateJacobian, Self::InputJacobian) {
+        let (by_state, by_input) = self.jacobians(x, u);
+        (self.drift(x, u), by_state, by_input)
+    }
 }
 
 /// dx = f(x, u) dt + G(x, u) dW, read in the Itô sense.

@@ -41,10 +41,16 @@ pub trait Real:
     fn sin_cos(self) -> (Self, Self);
 
     /// Sine of an angle in rad.
-    fn sin(self) -> Self;
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
 
     /// Cosine of an angle in rad.
-    fn cos(self) -> Self;
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
 
     /// e to the power `self`.
     fn exp(self) -> Self;
@@ -74,7 +80,10 @@ pub trait Real:
     fn sqrt(self) -> Self;
 
     /// 1/`self`.
-    fn recip(self) -> Self;
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Self::ONE / self
+    }
 
     /// Absolute value.
     fn abs(self) -> Self;
@@ -98,209 +107,101 @@ pub trait Real:
     fn is_finite(self) -> bool;
 }
 
-impl Real for f64 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const TWO: Self = 2.0;
-    const HALF: Self = 0.5;
+/// A scalar whose own sine, cosine and exponential are in `$own`. All other elementary functions are computed in doubles,
+/// and a single is rounded from that.
+macro_rules! real {
+    ($scalar:ident, $own:ident) => {
+        impl Real for $scalar {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const TWO: Self = 2.0;
+            const HALF: Self = 0.5;
 
-    #[inline(always)]
-    fn from_f64(value: f64) -> Self {
-        value
-    }
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
 
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
 
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        double::sin_cos(self)
-    }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                $own::sin_cos(self)
+            }
 
-    #[inline(always)]
-    fn sin(self) -> Self {
-        double::sin_cos(self).0
-    }
+            #[inline(always)]
+            fn exp(self) -> Self {
+                $own::exp(self)
+            }
 
-    #[inline(always)]
-    fn cos(self) -> Self {
-        double::sin_cos(self).1
-    }
+            #[inline(always)]
+            fn tan(self) -> Self {
+                double::tan(f64::from(self)) as Self
+            }
 
-    #[inline(always)]
-    fn exp(self) -> Self {
-        double::exp(self)
-    }
+            #[inline(always)]
+            fn asin(self) -> Self {
+                arc::asin(f64::from(self)) as Self
+            }
 
-    #[inline(always)]
-    fn tan(self) -> Self {
-        double::tan(self)
-    }
+            #[inline(always)]
+            fn atan(self) -> Self {
+                arc::atan(f64::from(self)) as Self
+            }
 
-    #[inline(always)]
-    fn asin(self) -> Self {
-        arc::asin(self)
-    }
+            #[inline(always)]
+            fn tanh(self) -> Self {
+                tangent::tanh(f64::from(self)) as Self
+            }
 
-    #[inline(always)]
-    fn atan(self) -> Self {
-        arc::atan(self)
-    }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                logarithm::ln(f64::from(self)) as Self
+            }
 
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        tangent::tanh(self)
-    }
+            #[inline(always)]
+            fn atan2(self, x: Self) -> Self {
+                arc::atan2(f64::from(self), f64::from(x)) as Self
+            }
 
-    #[inline(always)]
-    fn ln(self) -> Self {
-        logarithm::ln(self)
-    }
+            #[inline(always)]
+            fn powr(self, exponent: Self) -> Self {
+                logarithm::powr(f64::from(self), f64::from(exponent)) as Self
+            }
 
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        arc::atan2(self, x)
-    }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                root::$own(self)
+            }
 
-    #[inline(always)]
-    fn powr(self, exponent: Self) -> Self {
-        logarithm::powr(self, exponent)
-    }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $scalar::abs(self)
+            }
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        root::double(self)
-    }
+            #[inline(always)]
+            fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
+                let chosen = if self < bound { below } else { otherwise };
+                if self < bound || self >= bound {
+                    chosen
+                } else {
+                    Self::NAN
+                }
+            }
 
-    #[inline(always)]
-    fn recip(self) -> Self {
-        1.0 / self
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        f64::abs(self)
-    }
-
-    #[inline(always)]
-    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
-        let chosen = if self < bound { below } else { otherwise };
-        if self < bound || self >= bound {
-            chosen
-        } else {
-            Self::NAN
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $scalar::is_finite(self)
+            }
         }
-    }
-
-    #[inline(always)]
-    fn is_finite(self) -> bool {
-        f64::is_finite(self)
-    }
+    };
 }
 
-impl Real for f32 {
-    const ZERO: Self = 0.0;
-    const ONE: Self = 1.0;
-    const TWO: Self = 2.0;
-    const HALF: Self = 0.5;
-
-    #[inline(always)]
-    fn from_f64(value: f64) -> Self {
-        value as f32
-    }
-
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        single::sin_cos(self)
-    }
-
-    #[inline(always)]
-    fn sin(self) -> Self {
-        single::sin_cos(self).0
-    }
-
-    #[inline(always)]
-    fn cos(self) -> Self {
-        single::sin_cos(self).1
-    }
-
-    #[inline(always)]
-    fn exp(self) -> Self {
-        single::exp(self)
-    }
-
-    #[inline(always)]
-    fn tan(self) -> Self {
-        double::tan(f64::from(self)) as f32
-    }
-
-    #[inline(always)]
-    fn asin(self) -> Self {
-        arc::asin(f64::from(self)) as f32
-    }
-
-    #[inline(always)]
-    fn atan(self) -> Self {
-        arc::atan(f64::from(self)) as f32
-    }
-
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        tangent::tanh(f64::from(self)) as f32
-    }
-
-    #[inline(always)]
-    fn ln(self) -> Self {
-        logarithm::ln(f64::from(self)) as f32
-    }
-
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        arc::atan2(f64::from(self), f64::from(x)) as f32
-    }
-
-    #[inline(always)]
-    fn powr(self, exponent: Self) -> Self {
-        logarithm::powr(f64::from(self), f64::from(exponent)) as f32
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        root::single(self)
-    }
-
-    #[inline(always)]
-    fn recip(self) -> Self {
-        1.0 / self
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        f32::abs(self)
-    }
-
-    #[inline(always)]
-    fn select(self, bound: Self, below: Self, otherwise: Self) -> Self {
-        let chosen = if self < bound { below } else { otherwise };
-        if self < bound || self >= bound {
-            chosen
-        } else {
-            Self::NAN
-        }
-    }
-
-    #[inline(always)]
-    fn is_finite(self) -> bool {
-        f32::is_finite(self)
-    }
-}
+real!(f64, double);
+real!(f32, single);
 
 /// Square roots: of `core` there are none, and `libm`'s do not become vector instructions. Both round correctly.
 #[cfg(not(feature = "std"))]

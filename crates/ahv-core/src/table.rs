@@ -21,6 +21,8 @@ pub struct Table {
     pub joins: &'static [[&'static str; 4]],
     /// The entries of its validity box.
     pub validity: &'static [Interval],
+    /// What the monomials of its polynomials may be.
+    pub fits: &'static [Fit],
     /// What its numbers must obey.
     pub rules: &'static [Rule],
 }
@@ -209,6 +211,80 @@ impl Interval {
     #[must_use]
     pub const fn only_for(self, models: &'static [&'static str]) -> Self {
         Self { models, ..self }
+    }
+}
+
+/// A curve-fitted quantity: a section of the table whose keys are monomials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// Its section.
+    pub section: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+    /// The variables that its monomials may have.
+    pub variables: &'static [FitVariable],
+    /// Those in which it is of degree one at most, together.
+    pub affine: &'static [&'static str],
+    /// The models whose tables have it; empty if all have it.
+    pub models: &'static [&'static str],
+}
+
+impl Fit {
+    /// From its fields.
+    pub const fn new(
+        section: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        variables: &'static [FitVariable],
+        affine: &'static [&'static str],
+    ) -> Self {
+        Self {
+            section,
+            unit,
+            doc,
+            variables,
+            affine,
+            models: &[],
+        }
+    }
+
+    /// The quantity, in tables of these models alone.
+    #[must_use]
+    pub const fn only_for(self, models: &'static [&'static str]) -> Self {
+        Self { models, ..self }
+    }
+}
+
+/// A variable of the monomials of a [`Fit`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FitVariable {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit, angles in rad.
+    pub unit: &'static str,
+    /// The entry of the validity box that bounds it; none bounds a derived variable.
+    pub interval: Option<&'static str>,
+}
+
+impl FitVariable {
+    /// A variable that an entry of the validity box bounds.
+    pub const fn new(name: &'static str, unit: &'static str, interval: &'static str) -> Self {
+        Self {
+            name,
+            unit,
+            interval: Some(interval),
+        }
+    }
+
+    /// A derived variable, such as the Mach number, which nothing bounds.
+    pub const fn unbounded(name: &'static str, unit: &'static str) -> Self {
+        Self {
+            name,
+            unit,
+            interval: None,
+        }
     }
 }
 

@@ -75,15 +75,6 @@ impl DifferentiableModel for Known {
         };
         (rows([u.x, 0.0], [0.0, -4.0]), rows([x.x, 0.0], [0.0, 0.0]))
     }
-
-    fn drift_and_jacobians(
-        &self,
-        x: &Pair<f64>,
-        u: &Pair<f64>,
-    ) -> (Pair<f64>, Pair<Pair<f64>>, Pair<Pair<f64>>) {
-        let (by_state, by_input) = self.jacobians(x, u);
-        (self.drift(x, u), by_state, by_input)
-    }
 }
 
 impl StochasticModel for Known {

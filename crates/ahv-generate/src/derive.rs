@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
+use std::path::Path;
 use std::process::Output;
 
 use ahv_codegen::AUDIT;
@@ -19,8 +20,8 @@ use crate::tables::{Diagnostic, Tables};
 const BAD_TABLES: i32 = 2;
 
 #[derive(Deserialize)]
-struct Diagnostics {
-    diagnostics: Vec<Diagnostic>,
+pub(crate) struct Diagnostics {
+    pub(crate) diagnostics: Vec<Diagnostic>,
 }
 
 /// The IR of each table, by the table's name; and the audit, where a table has the printed form. Those that are `known` are
@@ -33,7 +34,9 @@ pub(crate) fn derive(
     let folder = tempfile::tempdir()
         .map_err(|error| Failure::new(format!("cannot make a temporary folder: {error}")))?;
     let output = {
-        let _progress = Progress::quiet("deriving the models");
+        let sought = tables.parsed.iter().map(|it| it.name.as_str());
+        let sought: Vec<&str> = sought.filter(|it| !known.contains_key(*it)).collect();
+        let _progress = Progress::quiet(format!("deriving the models of {}", sought.join(", ")));
         let mut command = python.command();
         command.args(["derive", "--out"]).arg(folder.path());
         for table in known.keys().filter(|it| *it != AUDIT) {
@@ -83,9 +86,32 @@ pub(crate) fn failure(output: &Output, tables: &Tables) -> Failure {
     {
         return tables.faults(found.diagnostics);
     }
+    if let Some(fault) = crash(&output.stderr, tables) {
+        return tables.faults(vec![fault]);
+    }
     with_stderr(format!("the derivation failed ({})", output.status), output)
 }
 
-fn with_stderr(message: String, output: &Output) -> Failure {
+/// A crash of the interpreter in a file beside a table, as Python's fault handler reports it.
+fn crash(stderr: &[u8], tables: &Tables) -> Option<Diagnostic> {
+    let text = String::from_utf8_lossy(stderr);
+    let (_, report) = text.split_once("Fatal Python error: ")?;
+    let message = format!("the Python interpreter crashed: {}", report.lines().next()?);
+    let (file, line) = report.lines().find_map(|frame| {
+        let (path, place) = frame
+            .trim()
+            .strip_prefix("File \"")?
+            .split_once("\", line ")?;
+        let line = place.split(' ').next()?.parse().ok()?;
+        let folders = tables.sources.iter().filter_map(|it| it.path.parent());
+        let file = folders
+            .into_iter()
+            .find_map(|it| Path::new(path).strip_prefix(it).ok())?;
+        Some((file.to_str()?.to_owned(), line))
+    })?;
+    Some(Diagnostic::of_line(&file, line, message))
+}
+
+pub(crate) fn with_stderr(message: String, output: &Output) -> Failure {
     Failure::new(format!("{message}{}", last_lines(&output.stderr)))
 }

@@ -5,26 +5,47 @@ use std::io::{self, IsTerminal as _};
 use std::ops::Range;
 use std::path::Path;
 
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, SourceSpan};
+use miette::{
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity, SourceCode,
+};
 
 use crate::excerpt::Excerpt;
 
 /// Something that a table may not say, with the place where it says so.
-#[derive(Debug, thiserror::Error, Diagnostic)]
+#[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct TableFault {
     /// What is wrong.
     pub message: String,
-    #[help]
+    severity: Severity,
     help: Option<String>,
-    #[source_code]
     table: Excerpt,
-    #[label]
-    span: SourceSpan,
+}
+
+impl Diagnostic for TableFault {
+    fn severity(&self) -> Option<Severity> {
+        Some(self.severity)
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        let help = self.help.as_ref()?;
+        Some(Box::new(help))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.table)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::underline(self.table.span.clone());
+        Some(Box::new(std::iter::once(label)))
+    }
 }
 
 impl TableFault {
-    pub(crate) fn new(
+    /// A fault in a part of the text of a file, in bytes, with what would be right.
+    #[must_use]
+    pub fn new(
         message: impl Into<String>,
         help: Option<String>,
         file: &str,
@@ -37,10 +58,46 @@ impl TableFault {
         let table = Excerpt::new(file, &visible(text), start..end);
         Self {
             message: message.into(),
+            severity: Severity::Error,
             help,
-            span: table.span.clone().into(),
             table,
         }
+    }
+
+    /// The same as a warning: no generation is refused for it.
+    #[must_use]
+    pub fn as_warning(self) -> Self {
+        let severity = Severity::Warning;
+        Self { severity, ..self }
+    }
+
+    /// The same as a note: nothing is wrong.
+    #[must_use]
+    pub fn as_note(self) -> Self {
+        let severity = Severity::Advice;
+        Self { severity, ..self }
+    }
+
+    /// The text for people: drawn on a terminal, plain ASCII elsewhere.
+    #[must_use]
+    pub fn render(&self, terminal: bool) -> String {
+        let mut theme = if terminal {
+            GraphicalTheme::unicode()
+        } else {
+            GraphicalTheme::none()
+        };
+        theme.characters.error = "error:".to_owned();
+        theme.characters.warning = "warning:".to_owned();
+        theme.characters.advice = "note:".to_owned();
+        let handler = GraphicalReportHandler::new_themed(theme)
+            .with_links(false)
+            .with_wrap_lines(false);
+        let mut drawn = String::new();
+        if handler.render_report(&mut drawn, self).is_err() {
+            drawn = format!("error: {self}\n");
+        }
+        // miette indents the first line, too.
+        drawn.trim_start().to_owned()
     }
 }
 
@@ -79,14 +136,18 @@ pub enum Failure {
 }
 
 impl Failure {
-    pub(crate) fn new(message: impl Into<String>) -> Self {
+    /// What happened, in words.
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Self {
         Self::Other {
             message: message.into(),
             help: None,
         }
     }
 
-    pub(crate) fn with_help(self, help: impl Into<String>) -> Self {
+    /// The same, with what to do about it.
+    #[must_use]
+    pub fn with_help(self, help: impl Into<String>) -> Self {
         match self {
             Self::Other { message, .. } => Self::Other {
                 message,
@@ -97,7 +158,7 @@ impl Failure {
     }
 
     /// For `map_err`: what could not be done to which path.
-    pub(crate) fn file(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+    pub fn file(deed: &str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let message = format!("cannot {deed} {}", path.display());
         move |error| Self::new(format!("{message}: {error}"))
     }
@@ -121,23 +182,7 @@ impl Failure {
         let mut text = String::new();
         match self {
             Self::Tables(faults) => {
-                let mut theme = if terminal {
-                    GraphicalTheme::unicode()
-                } else {
-                    GraphicalTheme::none()
-                };
-                theme.characters.error = "error:".to_owned();
-                let handler = GraphicalReportHandler::new_themed(theme)
-                    .with_links(false)
-                    .with_wrap_lines(false);
-                for fault in faults {
-                    let mut drawn = String::new();
-                    if handler.render_report(&mut drawn, fault).is_err() {
-                        drawn = format!("error: {fault}\n");
-                    }
-                    // miette indents the first line, too.
-                    text.push_str(drawn.trim_start());
-                }
+                text.extend(faults.iter().map(|fault| fault.render(terminal)));
             }
             Self::Other { message, help } => {
                 let _ = writeln!(text, "error: {message}");

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _};
-use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Output};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread;
@@ -61,7 +61,7 @@ pub(crate) fn check() -> Result<(), Failure> {
     }
 }
 
-/// Runs a program to its end without input, and returns what it printed; a signal ends it.
+/// Runs a program to its end, and returns what it printed; a signal ends it.
 ///
 /// # Errors
 /// [`Failure::Interrupted`] after a signal; `failed` of what else went wrong.
@@ -73,10 +73,7 @@ pub(crate) fn output(
     // Files, not pipes: nobody has to read them while the program runs.
     let mut start = || {
         let (out, err) = (tempfile::tempfile()?, tempfile::tempfile()?);
-        command
-            .stdin(Stdio::null())
-            .stdout(out.try_clone()?)
-            .stderr(err.try_clone()?);
+        command.stdout(out.try_clone()?).stderr(err.try_clone()?);
         Ok((command.spawn()?, out, err))
     };
     let (mut child, out, err) = start().map_err(&failed)?;

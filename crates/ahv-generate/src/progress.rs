@@ -3,15 +3,18 @@
 use std::io::{self, IsTerminal as _, Write as _};
 use std::time::Duration;
 
-use indicatif::ProgressBar;
+use indicatif::{ProgressBar, ProgressStyle};
 
-/// A spinner on a terminal, gone when dropped.
+/// A spinner on a terminal with the time since its start, gone when dropped.
 pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
     /// For work of a second or so: nothing in a pipe.
     pub(crate) fn quiet(message: impl Into<String>) -> Self {
+        let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
         let bar = ProgressBar::new_spinner().with_message(message.into());
+        let bar = bar.with_style(style);
         bar.enable_steady_tick(Duration::from_millis(100));
         Self(bar)
     }

@@ -46,7 +46,7 @@ impl Kind {
 
     fn of(path: &str) -> Self {
         match path.split_once('/') {
-            Some(("docs", _)) => Self::Documentation,
+            Some(("docs" | "schema", _)) => Self::Documentation,
             Some(("ir", _)) => Self::Ir,
             None if path == MANIFEST => Self::Ir,
             _ => Self::Code,

@@ -35,23 +35,36 @@ pub(crate) struct Tables {
 /// a family, at a line.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Diagnostic {
-    rule: String,
-    file: String,
-    path: Vec<String>,
-    part: DiagnosticPart,
-    message: String,
-    help: Option<String>,
-    line: Option<usize>,
+    pub(crate) rule: String,
+    pub(crate) file: String,
+    pub(crate) path: Vec<String>,
+    pub(crate) part: DiagnosticPart,
+    pub(crate) message: String,
+    pub(crate) help: Option<String>,
+    pub(crate) line: Option<usize>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum DiagnosticPart {
+pub(crate) enum DiagnosticPart {
     Key,
     Value,
 }
 
 impl Diagnostic {
+    /// A fault of a line of a family's file, which is named relative to the folder of the tables.
+    pub(crate) fn of_line(file: &str, line: usize, message: String) -> Self {
+        Self {
+            rule: "family".to_owned(),
+            file: file.to_owned(),
+            path: Vec::new(),
+            part: DiagnosticPart::Key,
+            message,
+            help: None,
+            line: Some(line),
+        }
+    }
+
     /// A fault of the value at a path.
     pub(crate) fn of_value(rule: &str, table: &Table, path: &[&str], message: &str) -> Self {
         Self {

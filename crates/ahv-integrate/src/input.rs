@@ -56,6 +56,7 @@ impl<M: Model, F: Fn(f64, &M::State) -> M::Input> InputSource<M> for Feedback<F>
 struct Samples<'a, U> {
     times: &'a [f64],
     values: &'a [U],
+    first: U,
 }
 
 impl<'a, U: Copy> Samples<'a, U> {
@@ -65,8 +66,12 @@ impl<'a, U: Copy> Samples<'a, U> {
             .zip(times.iter().skip(1))
             .all(|(earlier, later)| earlier < later);
         let finite = times.iter().all(|time| time.is_finite());
-        (!times.is_empty() && times.len() == values.len() && rising && finite)
-            .then_some(Self { times, values })
+        let first = *values.first()?;
+        (times.len() == values.len() && rising && finite).then_some(Self {
+            times,
+            values,
+            first,
+        })
     }
 
     /// Index of the first sample after `time`.
@@ -75,10 +80,11 @@ impl<'a, U: Copy> Samples<'a, U> {
         self.times.partition_point(|&sample| sample <= time)
     }
 
-    /// Index of the sample that holds at `time`; the first holds before its own time too.
+    /// The sample that holds at `time`; the first holds before its own time too.
     #[inline]
-    fn current(&self, time: f64) -> usize {
-        self.after(time).saturating_sub(1)
+    fn held(&self, time: f64) -> U {
+        let index = self.after(time).saturating_sub(1);
+        self.values.get(index).copied().unwrap_or(self.first)
     }
 
     #[inline]
@@ -99,29 +105,21 @@ impl<'a, U: Copy> Samples<'a, U> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held<'a, U> {
     samples: Samples<'a, U>,
-    first: U,
 }
 
 impl<'a, U: Copy> Held<'a, U> {
     /// `values[i]` from `times[i]`, in s, on; none unless there are as many values as times, at least one, and the
     /// times rise.
     pub fn new(times: &'a [f64], values: &'a [U]) -> Option<Self> {
-        Some(Self {
-            samples: Samples::new(times, values)?,
-            first: *values.first()?,
-        })
+        let samples = Samples::new(times, values)?;
+        Some(Self { samples })
     }
 }
 
 impl<M: Model> InputSource<M> for Held<'_, M::Input> {
     #[inline]
     fn at(&self, since: f64, _: f64, _: &M::State) -> M::Input {
-        let index = self.samples.current(since);
-        self.samples
-            .values
-            .get(index)
-            .copied()
-            .unwrap_or(self.first)
+        self.samples.held(since)
     }
 
     #[inline]
@@ -134,17 +132,14 @@ impl<M: Model> InputSource<M> for Held<'_, M::Input> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interpolated<'a, U> {
     samples: Samples<'a, U>,
-    first: U,
 }
 
 impl<'a, U: Copy> Interpolated<'a, U> {
     /// `values[i]` at `times[i]`, in s; none unless there are as many values as times, at least one, and the times
     /// rise.
     pub fn new(times: &'a [f64], values: &'a [U]) -> Option<Self> {
-        Some(Self {
-            samples: Samples::new(times, values)?,
-            first: *values.first()?,
-        })
+        let samples = Samples::new(times, values)?;
+        Some(Self { samples })
     }
 
     /// The ends of the line that holds at `since`; none where a sample holds.
@@ -164,14 +159,7 @@ impl<M: Model> InputSource<M> for Interpolated<'_, M::Input> {
                 let part = M::Scalar::from_f64((time - t0) / (t1 - t0));
                 u0.zip_with(u1, |a, b| a + part * (b - a))
             }
-            None => {
-                let index = self.samples.current(since);
-                self.samples
-                    .values
-                    .get(index)
-                    .copied()
-                    .unwrap_or(self.first)
-            }
+            None => self.samples.held(since),
         }
     }
 

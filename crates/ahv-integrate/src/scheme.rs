@@ -83,22 +83,35 @@ pub trait SdeScheme<M: StochasticModel>: Sized {
     ) -> Result<(), StepError<M::Scalar>>;
 }
 
-/// Wiener increments over a step of `dt`, in s, from the normal numbers from `first` on.
+/// Wiener increments over a step of `dt`, in s, from the normal numbers from 0 on.
 #[inline(always)]
 fn increments<R: Real, W: Vector<R>>(dt: f64, normal: impl Fn(usize) -> f64) -> W {
     let root = Real::sqrt(dt);
     W::from_fn(|channel| R::from_f64(root * normal(channel)))
 }
 
-/// Schemes that take the Wiener increments over the step and nothing else.
-macro_rules! by_increments {
-    ($($scheme:ident: $bound:ident, $sense:ident, $admits:ident;)+) => {$(
+/// Those and their integrals over the step; the second numbers of the channels follow the first.
+#[inline(always)]
+fn integrals<R: Real, W: Vector<R>>(dt: f64, normal: impl Fn(usize) -> f64) -> WienerIntegrals<W> {
+    let numbers = |first| W::from_fn(|channel| R::from_f64(normal(first + channel)));
+    WienerIntegrals::from_normals(dt, numbers(0), numbers(W::LEN))
+}
+
+/// Schemes whose noise, `$noise` of the step size and the normal numbers, is all that they need to step. The count is how many
+/// numbers a channel takes.
+macro_rules! by_noise {
+    ($($scheme:ident: $bound:ident, $sense:ident, $admits:ident, $noise:path, $count:literal;)+) => {$(
         impl<M: $bound> SdeScheme<M> for $scheme {
             const SENSE: Sense = Sense::$sense;
             const ADMITS: Admits = Admits::$admits;
 
             fn set_up(_: &M, _: &M::State, _: &M::Input, dt: f64) -> Result<Self, NoiseError> {
                 Ok(Self::new(dt))
+            }
+
+            #[inline]
+            fn normals(&self) -> usize {
+                $count * M::Noise::LEN
             }
 
             #[inline(always)]
@@ -109,75 +122,19 @@ macro_rules! by_increments {
                 u: &M::Input,
                 normal: impl Fn(usize) -> f64,
             ) -> Result<(), StepError<M::Scalar>> {
-                self.step(model, x, u, &increments(self.dt, normal))
+                self.step(model, x, u, &$noise(self.dt, normal))
             }
         }
     )+};
 }
 
-by_increments! {
-    ItoEulerMaruyama: StochasticModel, Ito, Any;
-    ItoHeun: ItoCorrected, Ito, Any;
-    StratonovichHeun: StochasticModel, Stratonovich, Any;
-    ItoMilstein: CommutativeNoise, Ito, Commutative;
-}
-
-impl<M: AdditiveNoise> SdeScheme<M> for ItoSra1 {
-    const SENSE: Sense = Sense::Ito;
-    const ADMITS: Admits = Admits::Additive;
-
-    fn set_up(_: &M, _: &M::State, _: &M::Input, dt: f64) -> Result<Self, NoiseError> {
-        Ok(Self::new(dt))
-    }
-
-    /// Two a channel: the second ones are for ΔZ.
-    #[inline]
-    fn normals(&self) -> usize {
-        2 * M::Noise::LEN
-    }
-
-    #[inline(always)]
-    fn step_from_normals(
-        &self,
-        model: &M,
-        x: &mut M::State,
-        u: &M::Input,
-        normal: impl Fn(usize) -> f64,
-    ) -> Result<(), StepError<M::Scalar>> {
-        let numbers = |first: usize| {
-            M::Noise::from_fn(|channel| M::Scalar::from_f64(normal(first + channel)))
-        };
-        let (first, second) = (numbers(0), numbers(M::Noise::LEN));
-        let integrals = WienerIntegrals::from_normals(self.dt, first, second);
-        self.step(model, x, u, &integrals)
-    }
-}
-
-impl<M: StochasticModel> SdeScheme<M> for ItoDri1 {
-    const SENSE: Sense = Sense::Ito;
-    const ADMITS: Admits = Admits::Any;
-
-    fn set_up(_: &M, _: &M::State, _: &M::Input, dt: f64) -> Result<Self, NoiseError> {
-        Ok(Self::new(dt))
-    }
-
-    /// Two a channel, as in [`WeakIncrements::from_normals`].
-    #[inline]
-    fn normals(&self) -> usize {
-        2 * M::Noise::LEN
-    }
-
-    #[inline(always)]
-    fn step_from_normals(
-        &self,
-        model: &M,
-        x: &mut M::State,
-        u: &M::Input,
-        normal: impl Fn(usize) -> f64,
-    ) -> Result<(), StepError<M::Scalar>> {
-        let increments = WeakIncrements::from_normals(self.dt, normal);
-        self.step(model, x, u, &increments)
-    }
+by_noise! {
+    ItoEulerMaruyama: StochasticModel, Ito, Any, increments, 1;
+    ItoHeun: ItoCorrected, Ito, Any, increments, 1;
+    StratonovichHeun: StochasticModel, Stratonovich, Any, increments, 1;
+    ItoMilstein: CommutativeNoise, Ito, Commutative, increments, 1;
+    ItoSra1: AdditiveNoise, Ito, Additive, integrals, 2;
+    ItoDri1: StochasticModel, Ito, Any, WeakIncrements::from_normals, 2;
 }
 
 /// With [`ItoHeun`] for the other states.

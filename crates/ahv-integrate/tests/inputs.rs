@@ -59,15 +59,6 @@ impl DifferentiableModel for Tank {
             },
         )
     }
-
-    fn drift_and_jacobians(
-        &self,
-        x: &State<f64>,
-        u: &Input<f64>,
-    ) -> (State<f64>, State<State<f64>>, State<Input<f64>>) {
-        let (by_state, by_input) = self.jacobians(x, u);
-        (self.drift(x, u), by_state, by_input)
-    }
 }
 
 const START: State<f64> = State {

@@ -1,4 +1,4 @@
-//! What the strong schemes do with what they are given; their orders are in the table of `orders`.
+//! What methods with a fixed step do with what they are given; their orders are in the table of `orders`.
 #![forbid(unsafe_code)]
 
 mod common;
@@ -10,9 +10,10 @@ mod order;
 #[path = "common/strong.rs"]
 mod strong;
 
+use ahv_core::Vector;
 use ahv_integrate::{
-    ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, StepError, StratonovichHeun,
-    WeakIncrements, WienerIntegrals,
+    Euler, Fixed, Heun, ItoDri1, ItoEulerMaruyama, ItoHeun, ItoMilstein, ItoSra1, Rk4, StepError,
+    StratonovichHeun, Tsit5, WeakIncrements, WienerIntegrals,
 };
 use normal::{Normal, refined};
 use order::observed_order;
@@ -37,6 +38,21 @@ fn equal_increments_give_equal_bits() {
     assert_eq!(run(), run());
 }
 
+/// Every method with a fixed step; those that follow a Wiener path with these increments.
+fn stepped(dt: f64, x: &mut Plane<f64>, dw: &Two<f64>) -> [Result<(), StepError<f64>>; 8] {
+    let (spiral, u) = (&Spiral, &NO_INPUT);
+    [
+        Euler::new(dt).step(spiral, x, u),
+        Heun::new(dt).step(spiral, x, u),
+        Rk4::new(dt).step(spiral, x, u),
+        Fixed::new(Tsit5, dt).step(spiral, x, u),
+        ItoEulerMaruyama::new(dt).step(spiral, x, u, dw),
+        ItoHeun::new(dt).step(spiral, x, u, dw),
+        StratonovichHeun::new(dt).step(spiral, x, u, dw),
+        ItoMilstein::new(dt).step(spiral, x, u, dw),
+    ]
+}
+
 #[test]
 fn bad_steps_are_errors_and_keep_the_state() {
     let dw = Two {
@@ -44,28 +60,24 @@ fn bad_steps_are_errors_and_keep_the_state() {
         w_2: f64::NAN,
     };
     let mut x = START;
-    for dt in [0.0, -1.0, f64::INFINITY] {
-        let expected = Err(StepError::StepSize { dt });
-        assert_eq!(
-            ItoHeun::new(dt).step(&Spiral, &mut x, &NO_INPUT, &dw),
-            expected
-        );
-        assert_eq!(
-            ItoMilstein::new(dt).step(&Spiral, &mut x, &NO_INPUT, &dw),
-            expected
-        );
-    }
-    for result in [
-        ItoHeun::new(0.1).step(&Spiral, &mut x, &NO_INPUT, &dw),
-        StratonovichHeun::new(0.1).step(&Spiral, &mut x, &NO_INPUT, &dw),
-        ItoMilstein::new(0.1).step(&Spiral, &mut x, &NO_INPUT, &dw),
-    ] {
-        assert!(
-            matches!(result, Err(StepError::NonFinite { name: "re", .. })),
-            "{result:?}"
-        );
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for result in stepped(dt, &mut x, &dw) {
+            let error = result.expect_err("no such step");
+            assert!(matches!(error, StepError::StepSize { .. }), "{error}");
+            assert!(error.to_string().contains("must be positive"), "{error}");
+        }
     }
     assert_eq!(x, START);
+    let non_finite = |result: &Result<(), StepError<f64>>| {
+        let is = matches!(result, Err(StepError::NonFinite { name: "re", .. }));
+        assert!(is, "{result:?}");
+    };
+    // Those that take noise.
+    stepped(0.1, &mut x, &dw)[4..].iter().for_each(non_finite);
+    let far = START.map(|value| 1e308 * value);
+    let mut x = far;
+    stepped(1e3, &mut x, &dw).iter().for_each(non_finite);
+    assert_eq!(x, far);
 }
 
 /// A step of [`Curved`] without noise.

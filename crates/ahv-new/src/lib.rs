@@ -22,7 +22,6 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod failure;
 mod name;
 mod origin;
 mod place;
@@ -32,9 +31,9 @@ mod start;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+pub use ahv_generate::Failure;
 use ahv_generate::Surroundings;
 
-pub use failure::Failure;
 use name::Name;
 use origin::Origin;
 use place::Place;
@@ -88,9 +87,7 @@ pub struct Created {
 #[must_use]
 pub fn run(args: &Args) -> u8 {
     let surroundings = ahv_generate::listen().and_then(|()| Surroundings::of_process());
-    let created = surroundings
-        .map_err(Failure::from)
-        .and_then(|surroundings| create(args, &surroundings));
+    let created = surroundings.and_then(|surroundings| create(args, &surroundings));
     match created {
         Ok(created) => {
             // A reader that has gone away is no failure: the repository is there.

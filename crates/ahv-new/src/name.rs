@@ -1,7 +1,7 @@
 //! What the new package may be called.
 
-use crate::failure::Failure;
 use crate::place::Place;
+use ahv_generate::Failure;
 
 /// The packages that this version of ahv is built of, as cargo locks them.
 pub(crate) const LOCK: &str = include_str!("../starts/Cargo.lock");

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use crate::failure::Failure;
 use crate::place::Place;
 use crate::{Args, slashed};
+use ahv_generate::Failure;
 
 /// The crates that the new repository depends on, by which a repository of ahv is known.
 pub(crate) const CRATES: [&str; 3] = ["ahv-analysis", "ahv-cli", "ahv-core"];

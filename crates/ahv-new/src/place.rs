@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::failure::Failure;
+use ahv_generate::Failure;
 
 /// How the name of the folder starts in which a repository is made.
 const TEMPORARY: &str = ".ahv-";

@@ -7,11 +7,11 @@ use ahv_generate::Surroundings;
 use clap::Parser as _;
 use serde_json::Value;
 
-use crate::failure::Failure;
 use crate::name::{LOCK, Name};
 use crate::origin::{CRATES, Origin};
 use crate::slashed;
 use crate::start::Start;
+use ahv_generate::Failure;
 
 /// Where the tables lie.
 const TABLES: &str = "tables";

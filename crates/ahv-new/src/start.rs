@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::Args;
-use crate::failure::Failure;
+use ahv_generate::Failure;
 
 /// What kind of start one is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -18,6 +18,7 @@
 
 pub mod backstepping;
 pub mod commands;
+pub mod compare;
 pub mod ensemble;
 pub mod reduce;
 pub mod reproduce;

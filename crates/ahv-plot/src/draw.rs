@@ -234,6 +234,17 @@ fn draw_layer(
             chart.draw_series(bars.iter().map(|&corners| Rectangle::new(corners, fill)))?;
         }
         Mark::Cells(cells) => draw_cells(cells, x, y, chart)?,
+        Mark::Label { at, text } => {
+            let font = ("sans-serif", FONT * SUBPIXELS).into_font().color(&colour);
+            let style = font.pos(Pos::new(HPos::Left, VPos::Center));
+            for place in scaled(&[*at]) {
+                page.draw(&Text::new(
+                    text.clone(),
+                    chart.backend_coord(&place),
+                    style.clone(),
+                ))?;
+            }
+        }
     }
     Ok(())
 }

@@ -40,6 +40,13 @@ pub enum Mark {
     VerticalRule(f64),
     /// A heat map with its colour bar.
     Cells(Cells),
+    /// A text that starts at a point.
+    Label {
+        /// Its left end, half up.
+        at: (f64, f64),
+        /// What it says.
+        text: String,
+    },
 }
 
 /// Values on a grid of rectangles.
@@ -164,6 +171,7 @@ impl Layer {
             Mark::Band(points) => points.iter().map(|p| p.0).collect(),
             Mark::Bars { edges, .. } => edges.clone(),
             Mark::HorizontalRule(_) => Vec::new(),
+            Mark::Label { at, .. } => vec![at.0],
             Mark::VerticalRule(x) => vec![*x],
             Mark::Cells(cells) => cells.x.clone(),
         }
@@ -177,6 +185,7 @@ impl Layer {
             Mark::Bars { heights, .. } => heights.clone(),
             Mark::HorizontalRule(y) => vec![*y],
             Mark::VerticalRule(_) => Vec::new(),
+            Mark::Label { at, .. } => vec![at.1],
             Mark::Cells(cells) => cells.y.clone(),
         }
     }

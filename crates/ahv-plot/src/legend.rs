@@ -66,6 +66,8 @@ impl<'a> Legend<'a> {
                     let centre = (left.midpoint(right), y);
                     draw_marker(area, *shape, centre, layer.colour)?;
                 }
+                // A text is its own legend.
+                Mark::Label { .. } => {}
                 Mark::Band(_) | Mark::Bars { .. } | Mark::Cells(_) => {
                     let fill = layer.colour.rgb().mix(0.35).filled();
                     let corners = [(left, y - px(6)), (right, y + px(6))];

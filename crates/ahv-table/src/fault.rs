@@ -33,6 +33,18 @@ impl Fault {
         )
     }
 
+    /// What is wrong, with no character that could act on a terminal.
+    #[must_use]
+    pub fn message(&self) -> String {
+        visible(&self.message)
+    }
+
+    /// What would be right, likewise; may be empty.
+    #[must_use]
+    pub fn help(&self) -> String {
+        visible(&self.help)
+    }
+
     pub(crate) fn new(
         rule: &'static str,
         path: &[&str],
@@ -52,21 +64,30 @@ impl Fault {
 
 impl Display for Fault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_visibly(formatter, &self.message)?;
+        Visible(&self.message).fmt(formatter)?;
         if !self.help.is_empty() {
-            formatter.write_str("; ")?;
-            write_visibly(formatter, &self.help)?;
+            write!(formatter, "; {}", Visible(&self.help))?;
         }
         write!(formatter, " [{}]", self.rule)
     }
 }
 
-/// Writes a text; a character that could act on a terminal is written as its code.
-fn write_visibly(formatter: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
-    text.chars().try_for_each(|c| match is_printable(c) {
-        true => formatter.write_char(c),
-        false => write!(formatter, "{}", c.escape_unicode()),
-    })
+/// A text of a table for people: a character that could act on a terminal or a page is written as its code.
+#[must_use]
+pub fn visible(text: &str) -> String {
+    Visible(text).to_string()
+}
+
+/// A text, in which a character that could act on a terminal is written as its code.
+struct Visible<'a>(&'a str);
+
+impl Display for Visible<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.chars().try_for_each(|c| match is_printable(c) {
+            true => formatter.write_char(c),
+            false => write!(formatter, "{}", c.escape_unicode()),
+        })
+    }
 }
 
 /// Whether a character can be shown: not a control, a mark of direction or the like.
@@ -84,7 +105,7 @@ pub(crate) fn shortened(text: &str) -> String {
     }
 }
 
-/// The nearest of the known words, or all of them.
+/// The nearest of the known words, or all of them, if there are any.
 pub(crate) fn suggestion(word: &str, known: &[&str]) -> String {
     const SIMILAR: f64 = 0.8;
     let word = word.to_lowercase();
@@ -95,6 +116,7 @@ pub(crate) fn suggestion(word: &str, known: &[&str]) -> String {
         .max_by(|a, b| a.0.total_cmp(&b.0));
     match nearest {
         Some((_, nearest)) => format!("did you mean `{nearest}`?"),
+        None if known.is_empty() => "nothing is known here".to_owned(),
         None => format!("known here: `{}`", known.join("`, `")),
     }
 }

@@ -84,6 +84,7 @@ mod tests {
             ["joined", "b", "parts", "gust"],
         ],
         validity: &[],
+        fits: &[],
         rules: &[],
     };
     const TEXT: &str = "[table]\nname = \"t\"\nfamily = \"t.py\"\nmodels = [\"a\", \"b\"]\nunits = \"si\"\nset = \"own\"\n\

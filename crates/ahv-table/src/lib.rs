@@ -38,9 +38,10 @@ mod unit;
 
 use ahv_core::{Bounds, ChoiceOption, GeneratedModel, Table, Vector};
 
-pub use fault::Fault;
+pub use fault::{Fault, visible};
+pub use monomial::{Powers, powers};
 pub use text::{Part, Text, Unreadable};
-pub use unit::{degrees, in_radians};
+pub use unit::{Unit, degrees, in_radians, in_si, si_name};
 
 /// The models of one table, which all models of a package belong to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +57,24 @@ pub struct Family {
 }
 
 impl Family {
+    /// Of no models: a table of theirs has no section of numbers.
+    pub const NONE: Self = Self {
+        table: &Table {
+            name: "",
+            models: &[],
+            unit_system: header::FOOT_SLUG,
+            entries: &[],
+            choices: &[],
+            joins: &[],
+            validity: &[],
+            fits: &[],
+            rules: &[],
+        },
+        names: &[],
+        units: &[],
+        si_units: &[],
+    };
+
     /// The family of the model `M`.
     #[must_use]
     pub fn of<M: GeneratedModel>() -> Self {

@@ -4,8 +4,8 @@ use ahv_core::{Bounds, Choice, ChoiceOption, EntryKind, Interval, Table};
 use toml_edit::Item;
 
 use crate::entries::{Entries, shown};
-use crate::fault::{shortened, suggestion};
-use crate::monomial::powers;
+use crate::fault::suggestion;
+use crate::monomial::{Powers, powers, powers_in};
 use crate::{Checked, Family, Fault, Quantity, Set, unit};
 
 pub(crate) const HEADER: &str = "table";
@@ -174,30 +174,29 @@ impl<'a> Reader<'a> {
             return;
         }
         let indices = self.indices(section);
-        let known: Vec<&str> = indices
-            .iter()
-            .map(|&it| self.table.entries[it].key)
-            .collect();
+        let mut seen: Vec<(&str, Powers<'_>)> = Vec::new();
         for (key, _) in content.iter() {
-            let monomial = powers(key);
-            let mut of_key = indices.iter().copied().filter(|&index| {
-                monomial.is_some() && powers(self.table.entries[index].key) == monomial
-            });
-            match of_key.next().map(|index| (index, self.keys[index])) {
+            let Some(monomial) = self.monomial(section, key) else {
+                continue;
+            };
+            let path = [section, key];
+            if let Some((other, _)) = seen.iter().find(|(_, known)| *known == monomial) {
+                let message = format!("`{key}` is the same monomial as `{other}`");
+                self.entries.key("duplicate-monomial", &path, &message, "");
+                continue;
+            }
+            let mut of_key = indices.iter().copied();
+            let index =
+                of_key.find(|&it| powers(self.table.entries[it].key).as_ref() == Some(&monomial));
+            seen.push((key, monomial));
+            match index {
+                Some(index) => self.take(index, section, key),
                 None => {
-                    let shown = shortened(key);
                     let message =
-                        format!("the models have no coefficient of `{shown}` in `[{section}]`");
-                    let help = format!("{GENERATE}; {}", suggestion(key, &known));
+                        format!("the models have no coefficient of `{key}` in `[{section}]`");
                     self.entries
-                        .key("needs-generation", &[section, key], &message, &help);
+                        .key("needs-generation", &path, &message, GENERATE);
                 }
-                Some((_, Some(other))) => {
-                    let message = format!("`{key}` is the same monomial as `{other}`");
-                    self.entries
-                        .key("duplicate-monomial", &[section, key], &message, "");
-                }
-                Some((index, None)) => self.take(index, section, key),
             }
         }
         for index in indices {
@@ -206,6 +205,16 @@ impl<'a> Reader<'a> {
                 self.missing(section, entry.key, entry.doc, "");
             }
         }
+    }
+
+    /// The monomial that a key of a polynomial is, if it may be one.
+    fn monomial<'k>(&mut self, section: &str, key: &'k str) -> Option<Powers<'k>> {
+        let fit = self.table.fits.iter().find(|fit| fit.section == section)?;
+        let read = powers_in(key, fit);
+        if let Err((rule, message, help)) = &read {
+            self.entries.key(rule, &[section, key], message, help);
+        }
+        read.ok()
     }
 
     fn choices(&mut self, choices: &[&'static Choice]) -> Vec<&'static ChoiceOption> {
@@ -296,7 +305,7 @@ impl<'a> Reader<'a> {
             entries.value("range", &path, "`min` must be below `max`", "");
         }
         let expected = match entries.system {
-            SI => unit::in_si(interval.unit),
+            SI => unit::si_name(interval.unit),
             _ => interval.unit.to_owned(),
         };
         let path = [VALIDITY, interval.name, "unit"];

@@ -52,6 +52,12 @@ impl Text {
         }
     }
 
+    /// The text itself.
+    #[must_use]
+    pub fn raw(&self) -> &str {
+        self.document.raw()
+    }
+
     /// The whole table.
     #[must_use]
     pub fn root(&self) -> &dyn TableLike {

@@ -2,7 +2,7 @@
 
 /// A unit: powers of length, mass, time, angle and temperature, and its size in metre, kilogram, second, radian and kelvin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Unit {
+pub struct Unit {
     powers: [f64; 5],
     size: f64,
 }
@@ -39,8 +39,15 @@ pub(crate) fn known() -> String {
     KNOWN.map(|(name, ..)| name).join(", ")
 }
 
+/// The SI unit of a unit in foot and slug, and what a value is multiplied with to be in it: `kg/m^3` for `slug/ft^3`; `None` if it
+/// is no unit.
+pub fn in_si(unit: &str) -> Option<(String, f64)> {
+    Some((si_name(unit), Unit::parse(unit)?.size))
+}
+
 /// The SI unit in the place of one in foot and slug: `kg/m^3` for `slug/ft^3`.
-pub(crate) fn in_si(mut text: &str) -> String {
+#[must_use]
+pub fn si_name(mut text: &str) -> String {
     let mut converted = String::new();
     while let Some(first) = text.chars().next() {
         let name = taken(&mut text, |c| c.is_ascii_alphabetic());
@@ -74,17 +81,19 @@ pub fn in_radians(value: f64, degrees: i32) -> f64 {
 }
 
 impl Unit {
-    const ONE: Self = Self {
+    /// The unit of a pure number.
+    pub const ONE: Self = Self {
         powers: [0.0; 5],
         size: 1.0,
     };
 
     /// A degree in radians.
-    pub(crate) const DEGREE: f64 = std::f64::consts::PI / 180.0;
+    pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
     /// Reads `slug/ft^3`, `(ft*slug)^0.5/s`, `1/rad`; `None` if it is no unit. The grammar is that of the generator:
     /// brackets hold names alone, so that no text is too deep.
-    pub(crate) fn parse(text: &str) -> Option<Self> {
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
         if text.matches(['*', '/']).count() >= MOST_FACTORS {
             return None;
         }
@@ -94,18 +103,33 @@ impl Unit {
     }
 
     /// The size of the unit in terms of `other`; `None` if they measure different things.
-    pub(crate) fn in_terms_of(&self, other: &Self) -> Option<f64> {
+    #[must_use]
+    pub fn in_terms_of(&self, other: &Self) -> Option<f64> {
         (self.powers == other.powers).then(|| self.size / other.size)
     }
 
-    fn power(self, exponent: f64) -> Self {
+    /// The power of a unit.
+    #[must_use]
+    pub fn power(self, exponent: f64) -> Self {
         Self {
             powers: self.powers.map(|power| power * exponent),
             size: self.size.powf(exponent),
         }
     }
 
-    fn times(self, other: Self) -> Self {
+    /// The exponent of a base unit in it: -2 of `rad` in `ft/deg^2`.
+    ///
+    /// The name is one of `ft`, `slug`, `s`, `rad`, `K`; of any other the exponent is 0.
+    #[must_use]
+    pub fn exponent_of(&self, base: &str) -> f64 {
+        let bases = ["ft", "slug", "s", "rad", "K"];
+        let index = bases.iter().position(|name| *name == base);
+        index.map_or(0.0, |index| self.powers[index])
+    }
+
+    /// The product of two units.
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
         let [a, b, c, d, j] = self.powers;
         let [e, f, g, h, k] = other.powers;
         Self {
@@ -206,7 +230,7 @@ mod tests {
             ("lb*ft/rad", "N*m/rad"),
             ("1", "1"),
         ] {
-            assert_eq!(in_si(foot), si);
+            assert_eq!(si_name(foot), si);
         }
     }
 

@@ -3,6 +3,18 @@
 
 use std::process::ExitCode;
 
+use ahv_core::{ModelList, ModelVisitor};
+
+/// The generated models, and the one from first principles.
+struct Models;
+
+impl ModelList for Models {
+    fn visit(visitor: &mut impl ModelVisitor) {
+        ahv_models::Models::visit(visitor);
+        visitor.visit::<ahv_fpm::Model<f64>>();
+    }
+}
+
 fn main() -> ExitCode {
-    ahv_cli::run::<ahv_models::Models>(&ahv_paper::commands::all())
+    ahv_cli::run::<Models>(&ahv_paper::commands::all())
 }

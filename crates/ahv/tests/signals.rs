@@ -11,9 +11,12 @@ use std::time::Duration;
 use serde_json::Value;
 use tempfile::TempDir;
 
-fn start(arguments: &[&str]) -> Child {
+/// Starts `ahv` with these words; the first text may be several, with blanks between them.
+fn start(words: &[&str]) -> Child {
+    let (line, others) = words.split_first().expect("a word");
     let mut command = Command::new(env!("CARGO_BIN_EXE_ahv"));
-    let command = command.args(arguments).stdin(Stdio::null());
+    let command = command.args(line.split_whitespace()).args(others);
+    let command = command.stdin(Stdio::null());
     let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command.spawn().expect("ahv starts")
 }
@@ -60,10 +63,7 @@ fn json(output: &Output) -> Value {
 fn montecarlo_reports_the_members_that_were_flown() {
     let flights = |members: &str, out: &str| {
         start(&[
-            "montecarlo",
-            "--model",
-            "sdcom",
-            "--members",
+            "montecarlo --model sdcom --members",
             members,
             "--t-end",
             "2",
@@ -143,17 +143,7 @@ fn nothing_is_left_of_a_simulation() {
         let (place, _) = folder();
         let out = place.path().join("flight.csv");
         let out = out.to_str().expect("text");
-        let child = start(&[
-            "simulate",
-            "--model",
-            "com_rigid",
-            "--t-end",
-            "10",
-            "--dt",
-            "1e-7",
-            "--out",
-            out,
-        ]);
+        let child = start(&["simulate --model com_rigid --t-end 10 --dt 1e-7 --out", out]);
         at_work(place.path());
         let output = end(child, signal);
         assert_eq!(output.status.code(), Some(code), "{output:?}");
@@ -164,16 +154,7 @@ fn nothing_is_left_of_a_simulation() {
 #[test]
 fn disperse_reports_the_members_that_were_drawn() {
     let (place, out) = folder();
-    let child = start(&[
-        "disperse",
-        "--model",
-        "dcom",
-        "--members",
-        "1000000",
-        "--json",
-        "--out",
-        &out,
-    ]);
+    let child = start(&["disperse --model dcom --members 1000000 --json --out", &out]);
     sleep(Duration::from_secs(2));
     let output = end(child, "-INT");
     assert_eq!(output.status.code(), Some(130), "{output:?}");
@@ -196,17 +177,7 @@ fn disperse_reports_the_members_that_were_drawn() {
 fn covariance_reports_the_flights_that_were_flown() {
     let (place, out) = folder();
     let child = start(&[
-        "covariance",
-        "--model",
-        "sdcom",
-        "--t-end",
-        "0.2",
-        "--dt",
-        "0.002",
-        "--members",
-        "1000000",
-        "--json",
-        "--out",
+        "covariance --model sdcom --t-end 0.2 --dt 0.002 --members 1000000 --json --out",
         &out,
     ]);
     sleep(Duration::from_secs(4));
@@ -286,21 +257,8 @@ fn rare_without_an_estimate_says_so() {
 #[test]
 fn other_work_ends_at_once() {
     for arguments in [
-        &[
-            "rare", "--model", "sdcom", "--t-end", "100", "--passes", "chi_1=1", "--effort",
-            "100000",
-        ][..],
-        &[
-            "covariance",
-            "--model",
-            "sdcom",
-            "--t-end",
-            "1",
-            "--dt",
-            "0.00001",
-            "--members",
-            "100000",
-        ],
+        &["rare --model sdcom --t-end 100 --passes chi_1=1 --effort 100000"][..],
+        &["covariance --model sdcom --t-end 1 --dt 0.00001 --members 100000"],
     ] {
         let child = start(arguments);
         sleep(Duration::from_secs(1));

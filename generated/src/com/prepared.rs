@@ -19,8 +19,6 @@ ahv_core::record! {
         damping_2,
         /// Stiffness of mode 2, rad^2/s^2.
         stiffness_2,
-        /// Pitch moment of inertia that is left when the modes yield, slug*ft.
-        effective_inertia,
         inv_h_s, inv_m, half_s_over_m, inv_effective_inertia, two_g, three_t_alpha_3, two_t_alpha_2,
         three_t_phi_alpha_3, two_t_phi_alpha_2, two_c_d_alpha_2, two_c_m_alpha_2, two_n_1_alpha_2, two_n_2_alpha_2,
         d_pitch_acceleration_d_eta_1, d_pitch_acceleration_d_eta_dot_1, d_pitch_acceleration_d_eta_2,
@@ -42,7 +40,7 @@ ahv_core::record! {
         two_psi_2_2_over_effective_inertia, psi_2_z_t_over_effective_inertia, minus_psi_2_z_t_over_effective_inertia,
         psi_2_2_over_effective_inertia, d_eta_acceleration_2_d_n_2_0, two_earth_curvature_2, six_t_alpha_3,
         six_t_phi_alpha_3, two_m_2, c_bar_s, two_c_bar_c_m_alpha_2,
-        minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2, psi_1_2, psi_2_2, m_2,
+        minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2, psi_1_2, psi_2_2,
     }
     from Parameters {
         t_phi_alpha_3, t_phi_alpha_2, t_phi_alpha, t_phi, t_alpha_3, t_alpha_2, t_alpha, t_0,
@@ -75,10 +73,10 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.stiffness_2 = p.omega_2 * p.omega_2; // rad^2/s^2
     c.psi_1_2 = p.psi_1 * p.psi_1;
     c.psi_2_2 = p.psi_2 * p.psi_2;
-    c.effective_inertia = p.i_yy - c.psi_1_2 - c.psi_2_2; // slug*ft
+    let effective_inertia = p.i_yy - c.psi_1_2 - c.psi_2_2; // slug*ft
 
     // Derivatives with respect to eta_1
-    c.inv_effective_inertia = c.effective_inertia.recip();
+    c.inv_effective_inertia = effective_inertia.recip();
     c.d_pitch_acceleration_d_eta_1 = p.psi_1 * c.inv_effective_inertia * c.stiffness_1; // rad/s^2/ft^0.5/slug^0.5
     c.d_eta_acceleration_1_d_eta_1 = -(c.stiffness_1 + p.psi_1 * c.d_pitch_acceleration_d_eta_1); // 1/s^2
     c.d_eta_acceleration_2_d_eta_1 = -p.psi_2 * c.d_pitch_acceleration_d_eta_1; // 1/s^2
@@ -105,7 +103,10 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_eta_acceleration_1_d_n_1_0 = R::ONE + c.psi_1_2_over_effective_inertia;
     c.psi_2_2_over_effective_inertia = c.psi_2_2 * c.inv_effective_inertia;
     c.d_eta_acceleration_2_d_n_2_0 = R::ONE + c.psi_2_2_over_effective_inertia;
+}
 
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
@@ -117,11 +118,6 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_t_phi_alpha_2 = R::TWO * p.t_phi_alpha_2;
     c.two_c_d_alpha_2 = R::TWO * p.c_d_alpha_2;
     c.two_c_m_alpha_2 = R::TWO * p.c_m_alpha_2;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
     c.two_n_1_alpha_2 = R::TWO * p.n_1_alpha_2;
     c.two_n_2_alpha_2 = R::TWO * p.n_2_alpha_2;
     c.two_c_d_delta_e_2 = R::TWO * p.c_d_delta_e_2;
@@ -171,8 +167,8 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
     c.six_t_alpha_3 = R::from_f64(6.0) * p.t_alpha_3;
     c.six_t_phi_alpha_3 = R::from_f64(6.0) * p.t_phi_alpha_3;
-    c.m_2 = p.m * p.m;
-    c.two_m_2 = R::TWO * c.m_2;
+    let m_2 = p.m * p.m;
+    c.two_m_2 = R::TWO * m_2;
     c.c_bar_s = p.c_bar * p.s;
     c.two_c_bar_c_m_alpha_2 = R::TWO * p.c_bar * p.c_m_alpha_2;
     c.minus_two_psi_1_n_1_alpha_2_minus_two_psi_2_n_2_alpha_2 = -R::TWO * p.psi_1 * p.n_1_alpha_2

@@ -3,7 +3,7 @@
 //! What the table says beside its numbers.
 
 use super::nominal::{UNIT_SYSTEM, VALIDITY};
-use ahv_core::{Choice, ChoiceOption, Entry, Interval, Rule, Sign, Table, Term};
+use ahv_core::{Choice, ChoiceOption, Entry, Fit, FitVariable, Interval, Rule, Sign, Table, Term};
 
 /// Entries, choices, validity box and rules of the table.
 pub const TABLE: Table = Table {
@@ -98,6 +98,68 @@ pub const TABLE: Table = Table {
             ).only_for(&["com"]),
         Interval::new("phi", "1", VALIDITY.phi, &["phi"]),
         Interval::new("delta_e", "rad", VALIDITY.delta_e, &["delta_e"]),
+    ],
+    fits: &[
+        Fit::new(
+            "T",
+            "lb/ft",
+            "thrust",
+            &[
+                FitVariable::new("phi", "1", "phi"),
+                FitVariable::new("alpha", "rad", "alpha"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_L",
+            "1",
+            "lift coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_D",
+            "1",
+            "drag coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_M",
+            "1",
+            "pitching-moment coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+            ],
+            &[],
+        ),
+        Fit::new(
+                "N_1",
+                "(ft*slug)^0.5/s^2",
+                "generalized force of mode 1",
+                &[
+                    FitVariable::new("alpha", "rad", "alpha"),
+                    FitVariable::new("delta_e", "rad", "delta_e"),
+                ],
+                &[],
+            ).only_for(&["com"]),
+        Fit::new(
+                "N_2",
+                "(ft*slug)^0.5/s^2",
+                "generalized force of mode 2",
+                &[
+                    FitVariable::new("alpha", "rad", "alpha"),
+                    FitVariable::new("delta_e", "rad", "delta_e"),
+                ],
+                &[],
+            ).only_for(&["com"]),
     ],
     rules: &[
         Rule::new("positive", "`m` (vehicle mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),

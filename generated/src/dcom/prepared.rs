@@ -52,7 +52,7 @@ ahv_core::record! {
         two_earth_curvature_2, six_c_t_alpha_3, six_c_t_phi_alpha_3, c_bar_s, two_c_bar_c_m_alpha_2, c_bar_c_m_eta_1,
         c_bar_c_m_eta_2, c_bar_c_m_eta_3, sigma_2_shared_noise, sigma_2_own_noise, sigma_3_shared_noise,
         sigma_3_own_noise, w_gamma_2, w_alpha_w_gamma, w_alpha_2, w_alpha_w_q, half_w_gamma_2, half_w_alpha_2,
-        inv_c_l_delta_c, d_c_m_d_delta_e, inv_c_l_delta_c_2,
+        inv_c_l_delta_c, d_c_m_d_delta_e,
     }
     from Parameters {
         rho_0, h_0,
@@ -105,7 +105,10 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
+}
 
+/// Fills a part of [`Prepared`].
+fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
@@ -144,16 +147,11 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.inv_m_2 = c.inv_m * c.inv_m;
     c.inv_h_s_2 = c.inv_h_s * c.inv_h_s;
     c.two_g_earth_curvature_over_r_e = R::TWO * p.g * c.earth_curvature * c.inv_r_e;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
     c.c_l_delta_e_over_c_l_delta_c_m = p.c_l_delta_e * c.inv_c_l_delta_c * c.inv_m;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c_m = p.canard_slaving * c.inv_c_l_delta_c * c.inv_m;
-    c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
-    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m = p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2
+    let inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
+    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_m = p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2
         * c.inv_m;
     c.minus_half_inv_m_2 = R::from_f64(-0.5) * c.inv_m_2;
     c.half_over_m = R::HALF * c.inv_m;
@@ -170,7 +168,7 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_bar_c_m_delta_c_canard_slaving_over_c_l_delta_c_i_yy = p.c_bar * p.c_m_delta_c * p.canard_slaving
         * c.inv_c_l_delta_c * c.inv_i_yy;
     c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar * p.c_m_delta_c
-        * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2 * c.inv_i_yy;
+        * p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2 * c.inv_i_yy;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;
     c.half_s = R::HALF * p.s;
     c.two_zeta_1 = R::TWO * p.zeta_1;
@@ -179,21 +177,21 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_n_1_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_1_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.c_n_1_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_1_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
     c.c_n_1_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_1_delta_c * p.canard_slaving * p.c_l_delta_e
-        * c.inv_c_l_delta_c_2;
+        * inv_c_l_delta_c_2;
     c.two_zeta_2 = R::TWO * p.zeta_2;
     c.two_omega_2 = R::TWO * p.omega_2;
     c.minus_two_omega_2 = R::from_f64(-2.0) * p.omega_2;
     c.c_n_2_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_2_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.c_n_2_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_2_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
     c.c_n_2_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_2_delta_c * p.canard_slaving * p.c_l_delta_e
-        * c.inv_c_l_delta_c_2;
+        * inv_c_l_delta_c_2;
     c.two_zeta_3 = R::TWO * p.zeta_3;
     c.two_omega_3 = R::TWO * p.omega_3;
     c.minus_two_omega_3 = R::from_f64(-2.0) * p.omega_3;
     c.c_n_3_delta_c_c_l_delta_e_over_c_l_delta_c = p.c_n_3_delta_c * p.c_l_delta_e * c.inv_c_l_delta_c;
     c.c_n_3_delta_c_canard_slaving_over_c_l_delta_c = p.c_n_3_delta_c * p.canard_slaving * c.inv_c_l_delta_c;
     c.c_n_3_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.c_n_3_delta_c * p.canard_slaving * p.c_l_delta_e
-        * c.inv_c_l_delta_c_2;
+        * inv_c_l_delta_c_2;
     c.two_earth_curvature_2 = R::TWO * c.earth_curvature_2;
     c.six_c_t_alpha_3 = R::from_f64(6.0) * p.c_t_alpha_3;
     c.six_c_t_phi_alpha_3 = R::from_f64(6.0) * p.c_t_phi_alpha_3;

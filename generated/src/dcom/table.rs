@@ -3,7 +3,7 @@
 //! What the table says beside its numbers.
 
 use super::nominal::{UNIT_SYSTEM, VALIDITY};
-use ahv_core::{Choice, ChoiceOption, Entry, Interval, Rule, Sign, Table, Term};
+use ahv_core::{Choice, ChoiceOption, Entry, Fit, FitVariable, Interval, Rule, Sign, Table, Term};
 
 /// Entries, choices, validity box and rules of the table.
 pub const TABLE: Table = Table {
@@ -175,6 +175,96 @@ pub const TABLE: Table = Table {
         Interval::new("phi", "1", VALIDITY.phi, &["phi"]),
         Interval::new("delta_e", "rad", VALIDITY.delta_e, &["delta_e"]),
         Interval::new("delta_c", "rad", VALIDITY.delta_c, &["delta_c"]),
+    ],
+    fits: &[
+        Fit::new(
+            "C_T",
+            "1",
+            "thrust coefficient",
+            &[
+                FitVariable::new("phi", "1", "phi"),
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("eta_1", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_2", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_3", "(ft*slug)^0.5", "eta"),
+            ],
+            &["eta_1", "eta_2", "eta_3"],
+        ),
+        Fit::new(
+            "C_L",
+            "1",
+            "lift coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_c", "rad", "delta_c"),
+                FitVariable::new("eta_1", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_2", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_3", "(ft*slug)^0.5", "eta"),
+            ],
+            &["eta_1", "eta_2", "eta_3"],
+        ),
+        Fit::new(
+            "C_D",
+            "1",
+            "drag coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_c", "rad", "delta_c"),
+                FitVariable::new("eta_1", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_2", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_3", "(ft*slug)^0.5", "eta"),
+            ],
+            &["eta_1", "eta_2", "eta_3"],
+        ),
+        Fit::new(
+            "C_M",
+            "1",
+            "pitching-moment coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_c", "rad", "delta_c"),
+                FitVariable::new("eta_1", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_2", "(ft*slug)^0.5", "eta"),
+                FitVariable::new("eta_3", "(ft*slug)^0.5", "eta"),
+            ],
+            &["eta_1", "eta_2", "eta_3"],
+        ),
+        Fit::new(
+            "C_N_1",
+            "(ft/slug)^0.5",
+            "generalized-force coefficient of mode 1",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_c", "rad", "delta_c"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_N_2",
+            "(ft/slug)^0.5",
+            "generalized-force coefficient of mode 2",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_c", "rad", "delta_c"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_N_3",
+            "(ft/slug)^0.5",
+            "generalized-force coefficient of mode 3",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_c", "rad", "delta_c"),
+            ],
+            &[],
+        ),
     ],
     rules: &[
         Rule::new("positive", "`m` (vehicle mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),

@@ -47,6 +47,7 @@ pub const TABLE: Table = Table {
         Interval::new("chi", "(ft*slug)^0.5", VALIDITY.chi, &["chi"]),
         Interval::new("force", "(ft*slug)^0.5/s^2", VALIDITY.force, &["force"]),
     ],
+    fits: &[],
     rules: &[
         Rule::new(
             "positive",

@@ -66,7 +66,8 @@ ahv_core::record! {
         chi_diffusion_2_shared_noise, chi_diffusion_2_own_noise, chi_diffusion_3_shared_noise,
         chi_diffusion_3_own_noise, w_gamma_2, w_alpha_w_gamma, w_alpha_2, w_alpha_w_q,
         w_alpha_chi_diffusion_2_own_noise, w_alpha_chi_diffusion_3_own_noise, half_w_gamma_2, half_w_alpha_2,
-        c_bar_c_m_of_g_pitch_rate_over_i_yy,
+        c_bar_c_m_of_g_pitch_rate_over_i_yy, inv_zeta_1, moment_matching_over_zeta_1, inv_zeta_2,
+        moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3,
     }
     from Parameters {
         rho_0, h_0,
@@ -106,20 +107,20 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 
     // Coloured noise, (23)
     let one_minus_moment_matching = R::ONE - p.moment_matching;
-    let inv_zeta_1 = p.zeta_1.recip();
-    let moment_matching_over_zeta_1 = p.moment_matching * inv_zeta_1;
+    c.inv_zeta_1 = p.zeta_1.recip();
+    c.moment_matching_over_zeta_1 = p.moment_matching * c.inv_zeta_1;
     c.d_chi_decay_1_d_omega_1 = p.zeta_1 * one_minus_moment_matching
-        + R::HALF * moment_matching_over_zeta_1; // 1/rad
+        + R::HALF * c.moment_matching_over_zeta_1; // 1/rad
     c.chi_decay_1 = p.omega_1 * c.d_chi_decay_1_d_omega_1; // 1/s
-    let inv_zeta_2 = p.zeta_2.recip();
-    let moment_matching_over_zeta_2 = p.moment_matching * inv_zeta_2;
+    c.inv_zeta_2 = p.zeta_2.recip();
+    c.moment_matching_over_zeta_2 = p.moment_matching * c.inv_zeta_2;
     c.d_chi_decay_2_d_omega_2 = p.zeta_2 * one_minus_moment_matching
-        + R::HALF * moment_matching_over_zeta_2; // 1/rad
+        + R::HALF * c.moment_matching_over_zeta_2; // 1/rad
     c.chi_decay_2 = p.omega_2 * c.d_chi_decay_2_d_omega_2; // 1/s
-    let inv_zeta_3 = p.zeta_3.recip();
-    let moment_matching_over_zeta_3 = p.moment_matching * inv_zeta_3;
+    c.inv_zeta_3 = p.zeta_3.recip();
+    c.moment_matching_over_zeta_3 = p.moment_matching * c.inv_zeta_3;
     c.d_chi_decay_3_d_omega_3 = p.zeta_3 * one_minus_moment_matching
-        + R::HALF * moment_matching_over_zeta_3; // 1/rad
+        + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
     // Derivatives with respect to delta_e
@@ -128,46 +129,46 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Derivatives with respect to parameters
-    let inv_zeta_1_2 = inv_zeta_1 * inv_zeta_1;
+    let inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;
     c.d_chi_decay_1_d_zeta_1 = p.omega_1
         * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_1_2) + R::ONE); // 1/s
-    let inv_zeta_2_2 = inv_zeta_2 * inv_zeta_2;
+    let inv_zeta_2_2 = c.inv_zeta_2 * c.inv_zeta_2;
     c.d_chi_decay_2_d_zeta_2 = p.omega_2
         * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2_2) + R::ONE); // 1/s
-    let inv_zeta_3_2 = inv_zeta_3 * inv_zeta_3;
+    let inv_zeta_3_2 = c.inv_zeta_3 * c.inv_zeta_3;
     c.d_chi_decay_3_d_zeta_3 = p.omega_3
         * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_3_2) + R::ONE); // 1/s
-    c.d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * inv_zeta_1 - p.zeta_1); // 1/s
-    c.d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * inv_zeta_2 - p.zeta_2); // 1/s
-    c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * inv_zeta_3 - p.zeta_3); // 1/s
+    c.d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * c.inv_zeta_1 - p.zeta_1); // 1/s
+    c.d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * c.inv_zeta_2 - p.zeta_2); // 1/s
+    c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * c.inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
     let one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
     let chi_share_1 = p.zeta_1 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * moment_matching_over_zeta_1;
+        + R::HALF * c.moment_matching_over_zeta_1;
     c.inv_omega_1 = p.omega_1.recip();
     c.chi_diffusion_1 = chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
     let chi_share_2 = p.zeta_2 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * moment_matching_over_zeta_2;
+        + R::HALF * c.moment_matching_over_zeta_2;
     c.inv_omega_2 = p.omega_2.recip();
     c.chi_diffusion_2 = chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
     let chi_share_3 = p.zeta_3 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * moment_matching_over_zeta_3;
+        + R::HALF * c.moment_matching_over_zeta_3;
     c.inv_omega_3 = p.omega_3.recip();
     c.chi_diffusion_3 = chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
 
     // Noise of the modes, (16)
     c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
+
+    // Strict-feedback form, (34)
+    c.c_m_of_g_pitch_rate = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain; // 1/rad
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Strict-feedback form, (34)
-    c.c_m_of_g_pitch_rate = p.c_m_delta_e + p.c_m_delta_c * c.canard_gain; // 1/rad
-
     // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_omega_1_2 = c.inv_omega_1 * c.inv_omega_1;
@@ -230,11 +231,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 = p.c_d_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
     c.c_d_eta_2_times_c_n_2_delta_c_times_inv_omega_2_2 = p.c_d_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
     c.c_d_eta_3_times_c_n_3_delta_c_times_inv_omega_3_2 = p.c_d_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
     c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c = p.canard_slaving * c.inv_c_l_delta_c;
@@ -252,6 +248,11 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_l_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
     c.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_l_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
     c.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_l_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
     c.half_inv_m_2 = R::HALF * c.inv_m_2;
     c.c_m_eta_1_inv_omega_1_2 = p.c_m_eta_1 * c.inv_omega_1_2;
     c.c_m_eta_2_inv_omega_2_2 = p.c_m_eta_2 * c.inv_omega_2_2;

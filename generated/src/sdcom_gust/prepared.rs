@@ -29,12 +29,6 @@ ahv_core::record! {
         own_noise,
         /// Diffusion of the coloured noise of mode 3, (ft*slug)^0.5/s^0.5.
         chi_diffusion_3,
-        /// Diffusion of the coloured noise of mode 1 over sigma/omega, dimensionless.
-        chi_share_1,
-        /// Diffusion of the coloured noise of mode 2 over sigma/omega, dimensionless.
-        chi_share_2,
-        /// Diffusion of the coloured noise of mode 3 over sigma/omega, dimensionless.
-        chi_share_3,
         inv_h_s, inv_omega_1_2, inv_omega_2_2, inv_omega_3_2, inv_m, half_s_over_m, inv_i_yy, inv_gust_time, two_g,
         three_c_t_alpha_3, two_c_t_alpha_2, two_c_n_1_alpha_2, two_c_n_2_alpha_2, two_c_n_3_alpha_2,
         three_c_t_phi_alpha_3, two_c_t_phi_alpha_2, two_c_d_alpha_2, two_c_m_alpha_2,
@@ -69,10 +63,8 @@ ahv_core::record! {
         d_chi_decay_2_d_moment_matching, d_chi_decay_3_d_omega_3, d_chi_decay_3_d_zeta_3,
         d_chi_decay_3_d_moment_matching, inv_gust_time_2, two_earth_curvature_2, six_c_t_alpha_3, six_c_t_phi_alpha_3,
         chi_diffusion_2_shared_noise, chi_diffusion_2_own_noise, chi_diffusion_3_shared_noise,
-        chi_diffusion_3_own_noise, gust_rms_sqrt_two_over_gust_time, one_minus_moment_matching, inv_zeta_1,
-        moment_matching_over_zeta_1, inv_zeta_2, moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3,
-        inv_zeta_1_2, inv_zeta_2_2, inv_zeta_3_2, one_minus_variance_matching_minus_moment_matching, inv_c_l_delta_c_2,
-        sqrt_two_over_gust_time,
+        chi_diffusion_3_own_noise, gust_rms_sqrt_two_over_gust_time, inv_zeta_1, moment_matching_over_zeta_1,
+        inv_zeta_2, moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3,
     }
     from Parameters {
         rho_0, h_0,
@@ -111,20 +103,20 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.elevator_lift = p.c_l_delta_e * c.d_elevator_lift_d_c_l_delta_e; // 1/rad
 
     // Coloured noise, (23)
-    c.one_minus_moment_matching = R::ONE - p.moment_matching;
+    let one_minus_moment_matching = R::ONE - p.moment_matching;
     c.inv_zeta_1 = p.zeta_1.recip();
     c.moment_matching_over_zeta_1 = p.moment_matching * c.inv_zeta_1;
-    c.d_chi_decay_1_d_omega_1 = p.zeta_1 * c.one_minus_moment_matching
+    c.d_chi_decay_1_d_omega_1 = p.zeta_1 * one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_1; // 1/rad
     c.chi_decay_1 = p.omega_1 * c.d_chi_decay_1_d_omega_1; // 1/s
     c.inv_zeta_2 = p.zeta_2.recip();
     c.moment_matching_over_zeta_2 = p.moment_matching * c.inv_zeta_2;
-    c.d_chi_decay_2_d_omega_2 = p.zeta_2 * c.one_minus_moment_matching
+    c.d_chi_decay_2_d_omega_2 = p.zeta_2 * one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_2; // 1/rad
     c.chi_decay_2 = p.omega_2 * c.d_chi_decay_2_d_omega_2; // 1/s
     c.inv_zeta_3 = p.zeta_3.recip();
     c.moment_matching_over_zeta_3 = p.moment_matching * c.inv_zeta_3;
-    c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
+    c.d_chi_decay_3_d_omega_3 = p.zeta_3 * one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
@@ -134,45 +126,43 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Derivatives with respect to parameters
-    c.inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;
+    let inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;
     c.d_chi_decay_1_d_zeta_1 = p.omega_1
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_1_2) + R::ONE); // 1/s
-    c.inv_zeta_2_2 = c.inv_zeta_2 * c.inv_zeta_2;
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_1_2) + R::ONE); // 1/s
+    let inv_zeta_2_2 = c.inv_zeta_2 * c.inv_zeta_2;
     c.d_chi_decay_2_d_zeta_2 = p.omega_2
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_2_2) + R::ONE); // 1/s
-    c.inv_zeta_3_2 = c.inv_zeta_3 * c.inv_zeta_3;
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2_2) + R::ONE); // 1/s
+    let inv_zeta_3_2 = c.inv_zeta_3 * c.inv_zeta_3;
     c.d_chi_decay_3_d_zeta_3 = p.omega_3
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_3_2) + R::ONE); // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_3_2) + R::ONE); // 1/s
     c.d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * c.inv_zeta_1 - p.zeta_1); // 1/s
     c.d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * c.inv_zeta_2 - p.zeta_2); // 1/s
     c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * c.inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    c.one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
-    c.chi_share_1 = p.zeta_1 * c.one_minus_variance_matching_minus_moment_matching
+    let one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
+    let chi_share_1 = p.zeta_1 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_1;
     c.inv_omega_1 = p.omega_1.recip();
-    c.chi_diffusion_1 = c.chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
-    c.chi_share_2 = p.zeta_2 * c.one_minus_variance_matching_minus_moment_matching
+    c.chi_diffusion_1 = chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
+    let chi_share_2 = p.zeta_2 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_2;
     c.inv_omega_2 = p.omega_2.recip();
-    c.chi_diffusion_2 = c.chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
-    c.chi_share_3 = p.zeta_3 * c.one_minus_variance_matching_minus_moment_matching
+    c.chi_diffusion_2 = chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
+    let chi_share_3 = p.zeta_3 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_3;
+    c.inv_omega_3 = p.omega_3.recip();
+    c.chi_diffusion_3 = chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
+
+    // Noise of the modes, (16)
+    c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Coloured noise, (23)
-    c.inv_omega_3 = p.omega_3.recip();
-    c.chi_diffusion_3 = c.chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
-
-    // Noise of the modes, (16)
-    c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
-
     // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_omega_1_2 = c.inv_omega_1 * c.inv_omega_1;
@@ -233,11 +223,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.two_c_t_eta_2 = R::TWO * p.c_t_eta_2;
     c.two_c_t_eta_3 = R::TWO * p.c_t_eta_3;
     c.c_t_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_t_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
     c.c_t_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_t_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
     c.c_t_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_t_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
     c.c_d_eta_1_times_c_n_1_delta_c_times_inv_omega_1_2 = p.c_d_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
@@ -246,8 +231,8 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.c_l_delta_e_over_c_l_delta_c = p.c_l_delta_e * c.inv_c_l_delta_c;
     c.minus_two_g_over_r_e = R::from_f64(-2.0) * p.g * c.inv_r_e;
     c.canard_slaving_over_c_l_delta_c = p.canard_slaving * c.inv_c_l_delta_c;
-    c.inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
-    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
+    let inv_c_l_delta_c_2 = c.inv_c_l_delta_c * c.inv_c_l_delta_c;
+    c.canard_slaving_c_l_delta_e_inv_c_l_delta_c_2 = p.canard_slaving * p.c_l_delta_e * inv_c_l_delta_c_2;
     c.minus_half_inv_m_2 = R::from_f64(-0.5) * c.inv_m_2;
     c.half_over_m = R::HALF * c.inv_m;
     c.c_l_eta_1_inv_omega_1_2 = p.c_l_eta_1 * c.inv_omega_1_2;
@@ -258,6 +243,11 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.half_c_l_eta_3_inv_omega_3_2 = R::HALF * p.c_l_eta_3 * c.inv_omega_3_2;
     c.earth_curvature_2 = c.earth_curvature * c.earth_curvature;
     c.c_l_eta_1_c_n_1_delta_c_inv_omega_1_2 = p.c_l_eta_1 * p.c_n_1_delta_c * c.inv_omega_1_2;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
     c.c_l_eta_2_c_n_2_delta_c_inv_omega_2_2 = p.c_l_eta_2 * p.c_n_2_delta_c * c.inv_omega_2_2;
     c.c_l_eta_3_c_n_3_delta_c_inv_omega_3_2 = p.c_l_eta_3 * p.c_n_3_delta_c * c.inv_omega_3_2;
     c.half_inv_m_2 = R::HALF * c.inv_m_2;
@@ -289,8 +279,8 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.chi_diffusion_2_own_noise = c.chi_diffusion_2 * c.own_noise;
     c.chi_diffusion_3_shared_noise = c.chi_diffusion_3 * p.shared_noise;
     c.chi_diffusion_3_own_noise = c.chi_diffusion_3 * c.own_noise;
-    c.sqrt_two_over_gust_time = (R::TWO * c.inv_gust_time).sqrt();
-    c.gust_rms_sqrt_two_over_gust_time = p.gust_rms * c.sqrt_two_over_gust_time;
+    let sqrt_two_over_gust_time = (R::TWO * c.inv_gust_time).sqrt();
+    c.gust_rms_sqrt_two_over_gust_time = p.gust_rms * sqrt_two_over_gust_time;
 }
 
 /// Computes everything that depends on parameters alone.

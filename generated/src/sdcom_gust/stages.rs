@@ -312,14 +312,12 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &
 
     // Derivatives with respect to gamma
     s.d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
+    s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_2<R: Real>(s: &mut Slopes<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
-    // Derivatives with respect to gamma
-    s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
-
     // Derivatives with respect to alpha
     s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
     let slope_of_c_t_in_incidence = p.three_c_t_alpha_3 * i.incidence_2
@@ -474,34 +472,13 @@ ahv_core::record! {
         d2_gamma_rate_d_altitude_d_altitude, d2_force_turn_d_altitude_d_alpha, d2_force_turn_d_altitude_d_alpha_gust,
         d2_force_turn_d_alpha_d_alpha, d2_force_turn_d_alpha_d_alpha_gust, d2_force_turn_d_alpha_gust_d_alpha_gust,
         d2_pitch_acceleration_d_velocity_d_alpha, d2_pitch_acceleration_d_altitude_d_alpha,
-        d2_pitch_acceleration_d_alpha_d_alpha, d2_dynamic_pressure_d_velocity_d_altitude,
-        d2_generalized_force_1_d_velocity_d_altitude, d2_generalized_force_2_d_velocity_d_altitude,
-        d2_generalized_force_3_d_velocity_d_altitude, d2_c_t_d_velocity_d_altitude,
-        d2_generalized_force_1_d_velocity_d_alpha, d2_eta_static_1_d_velocity_d_alpha,
-        d2_generalized_force_2_d_velocity_d_alpha, d2_eta_static_2_d_velocity_d_alpha,
-        d2_generalized_force_3_d_velocity_d_alpha, d2_eta_static_3_d_velocity_d_alpha, d2_c_t_d_velocity_d_alpha,
-        d2_thrust_d_velocity_d_alpha, d2_c_d_d_velocity_d_alpha, radius_ratio_3, d2_radius_ratio_d_altitude_d_altitude,
-        power_2_of_d_radius_ratio_d_altitude, d2_density_ratio_d_altitude_d_altitude, d2_density_d_altitude_d_altitude,
-        d2_dynamic_pressure_d_altitude_d_altitude, d2_generalized_force_1_d_altitude_d_altitude,
-        d2_generalized_force_2_d_altitude_d_altitude, d2_generalized_force_3_d_altitude_d_altitude,
-        d2_c_t_d_altitude_d_altitude, d2_generalized_force_1_d_altitude_d_alpha, d2_eta_static_1_d_altitude_d_alpha,
-        d2_generalized_force_2_d_altitude_d_alpha, d2_eta_static_2_d_altitude_d_alpha,
-        d2_generalized_force_3_d_altitude_d_alpha, d2_eta_static_3_d_altitude_d_alpha, d2_c_t_d_altitude_d_alpha,
-        d2_thrust_d_altitude_d_alpha, d2_c_d_d_altitude_d_alpha, d_slope_of_c_t_in_incidence_d_alpha,
-        d2_generalized_force_1_d_alpha_d_alpha, d2_eta_static_1_d_alpha_d_alpha, d2_generalized_force_2_d_alpha_d_alpha,
-        d2_eta_static_2_d_alpha_d_alpha, d2_generalized_force_3_d_alpha_d_alpha, d2_eta_static_3_d_alpha_d_alpha,
-        d_slope_of_c_t_phi_in_incidence_d_alpha, d2_c_t_d_alpha_d_alpha, d2_thrust_d_alpha_d_alpha,
-        d2_c_d_d_alpha_d_alpha, d2_gravity_turn_d_velocity_d_altitude, d2_turn_factor_d_velocity_d_altitude,
-        d2_c_l_d_velocity_d_altitude, d2_normal_coefficient_d_velocity_d_altitude, d2_force_turn_d_velocity_d_altitude,
-        d2_c_l_d_velocity_d_alpha, sin_alpha_times_d2_c_t_d_velocity_d_alpha, d2_normal_coefficient_d_velocity_d_alpha,
-        d2_normal_coefficient_d_velocity_d_alpha_gust, d2_gravity_turn_d_altitude_d_altitude,
-        d2_turn_factor_d_altitude_d_altitude, d2_c_l_d_altitude_d_altitude, d2_normal_coefficient_d_altitude_d_altitude,
-        d2_force_turn_d_altitude_d_altitude, d2_c_l_d_altitude_d_alpha, sin_alpha_times_d2_c_t_d_altitude_d_alpha,
-        d2_normal_coefficient_d_altitude_d_alpha, d2_normal_coefficient_d_altitude_d_alpha_gust, d2_c_l_d_alpha_d_alpha,
-        d_c_t_d_alpha_times_cos_alpha, sin_alpha_times_d2_c_t_d_alpha_d_alpha, d2_normal_coefficient_d_alpha_d_alpha,
-        d2_normal_coefficient_d_alpha_d_alpha_gust, d2_normal_coefficient_d_alpha_gust_d_alpha_gust,
-        d2_c_m_d_velocity_d_alpha, d2_pitching_moment_d_velocity_d_alpha, d2_c_m_d_altitude_d_alpha,
-        d2_pitching_moment_d_altitude_d_alpha, d2_c_m_d_alpha_d_alpha, d2_pitching_moment_d_alpha_d_alpha,
+        d2_pitch_acceleration_d_alpha_d_alpha, d2_c_t_d_velocity_d_altitude, d2_eta_static_1_d_velocity_d_alpha,
+        d2_eta_static_2_d_velocity_d_alpha, d2_eta_static_3_d_velocity_d_alpha, d2_c_t_d_velocity_d_alpha,
+        d2_thrust_d_velocity_d_alpha, d2_radius_ratio_d_altitude_d_altitude, d2_density_d_altitude_d_altitude,
+        d2_c_t_d_altitude_d_altitude, d2_eta_static_1_d_altitude_d_alpha, d2_eta_static_2_d_altitude_d_alpha,
+        d2_eta_static_3_d_altitude_d_alpha, d2_c_t_d_altitude_d_alpha, d2_thrust_d_altitude_d_alpha,
+        d2_eta_static_1_d_alpha_d_alpha, d2_eta_static_2_d_alpha_d_alpha, d2_eta_static_3_d_alpha_d_alpha,
+        d2_c_t_d_alpha_d_alpha, d2_thrust_d_alpha_d_alpha,
     }
 }
 
@@ -511,19 +488,19 @@ fn curvatures_part_1<R: Real>(
     h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
-    h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
-    h.d2_reference_force_d_velocity_d_altitude = p.s * h.d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
-    h.d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // lb*s/ft^4
+    h.d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // lb*s/ft^3
+    let d2_generalized_force_1_d_velocity_d_altitude = i.c_n_1
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    h.d2_eta_static_1_d_velocity_d_altitude = h.d2_generalized_force_1_d_velocity_d_altitude
+    h.d2_eta_static_1_d_velocity_d_altitude = d2_generalized_force_1_d_velocity_d_altitude
         * p.inv_omega_1_2; // slug^0.5*s/ft^1.5
-    h.d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
+    let d2_generalized_force_2_d_velocity_d_altitude = i.c_n_2
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    h.d2_eta_static_2_d_velocity_d_altitude = h.d2_generalized_force_2_d_velocity_d_altitude
+    h.d2_eta_static_2_d_velocity_d_altitude = d2_generalized_force_2_d_velocity_d_altitude
         * p.inv_omega_2_2; // slug^0.5*s/ft^1.5
-    h.d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
+    let d2_generalized_force_3_d_velocity_d_altitude = i.c_n_3
         * h.d2_reference_force_d_velocity_d_altitude; // slug^0.5/ft^1.5/s
-    h.d2_eta_static_3_d_velocity_d_altitude = h.d2_generalized_force_3_d_velocity_d_altitude
+    h.d2_eta_static_3_d_velocity_d_altitude = d2_generalized_force_3_d_velocity_d_altitude
         * p.inv_omega_3_2; // slug^0.5*s/ft^1.5
     h.d2_c_t_d_velocity_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
         + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
@@ -534,61 +511,53 @@ fn curvatures_part_1<R: Real>(
         + i.reference_force * h.d2_c_t_d_velocity_d_altitude; // lb*s/ft^3
 
     // Derivatives with respect to alpha
-    h.d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
+    let d2_generalized_force_1_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.slope_of_c_n_1_in_incidence; // slug^0.5/ft^0.5/s/rad
-    h.d2_eta_static_1_d_velocity_d_alpha = h.d2_generalized_force_1_d_velocity_d_alpha
+    h.d2_eta_static_1_d_velocity_d_alpha = d2_generalized_force_1_d_velocity_d_alpha
         * p.inv_omega_1_2; // slug^0.5*s/ft^0.5/rad
-    h.d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
+    let d2_generalized_force_2_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.slope_of_c_n_2_in_incidence; // slug^0.5/ft^0.5/s/rad
-    h.d2_eta_static_2_d_velocity_d_alpha = h.d2_generalized_force_2_d_velocity_d_alpha
+    h.d2_eta_static_2_d_velocity_d_alpha = d2_generalized_force_2_d_velocity_d_alpha
         * p.inv_omega_2_2; // slug^0.5*s/ft^0.5/rad
-    h.d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
+    let d2_generalized_force_3_d_velocity_d_alpha = s.d_reference_force_d_velocity
         * s.slope_of_c_n_3_in_incidence; // slug^0.5/ft^0.5/s/rad
-    h.d2_eta_static_3_d_velocity_d_alpha = h.d2_generalized_force_3_d_velocity_d_alpha
+    h.d2_eta_static_3_d_velocity_d_alpha = d2_generalized_force_3_d_velocity_d_alpha
         * p.inv_omega_3_2; // slug^0.5*s/ft^0.5/rad
     h.d2_c_t_d_velocity_d_alpha = p.c_t_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
         + p.c_t_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
         + p.c_t_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
     h.d2_thrust_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_t_d_alpha
         + i.reference_force * h.d2_c_t_d_velocity_d_alpha; // lb*s/ft^2/rad
-    h.d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+    let d2_c_d_d_velocity_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
         + p.c_d_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
         + p.c_d_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
     h.d2_drag_d_velocity_d_alpha = s.d_reference_force_d_velocity * s.d_c_d_d_alpha
-        + i.reference_force * h.d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
+        + i.reference_force * d2_c_d_d_velocity_d_alpha; // lb*s/ft^2/rad
 
     // Derivatives with respect to altitude
-    h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
-    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
     h.d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    h.d2_density_d_altitude_d_altitude = p.rho_0 * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
-    h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+    let d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    h.d2_density_d_altitude_d_altitude = p.rho_0 * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * h.d2_density_d_altitude_d_altitude; // lb/ft^4
-    h.d2_reference_force_d_altitude_d_altitude = p.s * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
-    h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
+    h.d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
+    let d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to altitude
-    h.d2_eta_static_1_d_altitude_d_altitude = h.d2_generalized_force_1_d_altitude_d_altitude
+    h.d2_eta_static_1_d_altitude_d_altitude = d2_generalized_force_1_d_altitude_d_altitude
         * p.inv_omega_1_2; // slug^0.5/ft^1.5
-    h.d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
+    let d2_generalized_force_2_d_altitude_d_altitude = i.c_n_2
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    h.d2_eta_static_2_d_altitude_d_altitude = h.d2_generalized_force_2_d_altitude_d_altitude
+    h.d2_eta_static_2_d_altitude_d_altitude = d2_generalized_force_2_d_altitude_d_altitude
         * p.inv_omega_2_2; // slug^0.5/ft^1.5
-    h.d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
+    let d2_generalized_force_3_d_altitude_d_altitude = i.c_n_3
         * h.d2_reference_force_d_altitude_d_altitude; // slug^0.5/ft^1.5/s^2
-    h.d2_eta_static_3_d_altitude_d_altitude = h.d2_generalized_force_3_d_altitude_d_altitude
+    h.d2_eta_static_3_d_altitude_d_altitude = d2_generalized_force_3_d_altitude_d_altitude
         * p.inv_omega_3_2; // slug^0.5/ft^1.5
     h.d2_c_t_d_altitude_d_altitude = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
@@ -597,58 +566,95 @@ fn curvatures_part_2<R: Real>(
         R::TWO * s.d_c_t_d_altitude * s.d_reference_force_d_altitude
         + i.c_t * h.d2_reference_force_d_altitude_d_altitude
         + i.reference_force * h.d2_c_t_d_altitude_d_altitude; // lb/ft^3
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to alpha
-    h.d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
+    let d2_generalized_force_1_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.slope_of_c_n_1_in_incidence; // slug^0.5/ft^0.5/s^2/rad
-    h.d2_eta_static_1_d_altitude_d_alpha = h.d2_generalized_force_1_d_altitude_d_alpha
+    h.d2_eta_static_1_d_altitude_d_alpha = d2_generalized_force_1_d_altitude_d_alpha
         * p.inv_omega_1_2; // slug^0.5/ft^0.5/rad
-    h.d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
+    let d2_generalized_force_2_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.slope_of_c_n_2_in_incidence; // slug^0.5/ft^0.5/s^2/rad
-    h.d2_eta_static_2_d_altitude_d_alpha = h.d2_generalized_force_2_d_altitude_d_alpha
+    h.d2_eta_static_2_d_altitude_d_alpha = d2_generalized_force_2_d_altitude_d_alpha
         * p.inv_omega_2_2; // slug^0.5/ft^0.5/rad
-    h.d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
+    let d2_generalized_force_3_d_altitude_d_alpha = s.d_reference_force_d_altitude
         * s.slope_of_c_n_3_in_incidence; // slug^0.5/ft^0.5/s^2/rad
-    h.d2_eta_static_3_d_altitude_d_alpha = h.d2_generalized_force_3_d_altitude_d_alpha
+    h.d2_eta_static_3_d_altitude_d_alpha = d2_generalized_force_3_d_altitude_d_alpha
         * p.inv_omega_3_2; // slug^0.5/ft^0.5/rad
     h.d2_c_t_d_altitude_d_alpha = p.c_t_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
         + p.c_t_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
         + p.c_t_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
     h.d2_thrust_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_t_d_alpha
         + i.reference_force * h.d2_c_t_d_altitude_d_alpha; // lb/ft^2/rad
-    h.d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+    let d2_c_d_d_altitude_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
         + p.c_d_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
         + p.c_d_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
     h.d2_drag_d_altitude_d_alpha = s.d_reference_force_d_altitude * s.d_c_d_d_alpha
-        + i.reference_force * h.d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
-    h.d_slope_of_c_t_in_incidence_d_alpha = p.six_c_t_alpha_3 * i.incidence
+        + i.reference_force * d2_c_d_d_altitude_d_alpha; // lb/ft^2/rad
+    let d_slope_of_c_t_in_incidence_d_alpha = p.six_c_t_alpha_3 * i.incidence
         + R::TWO * p.c_t_alpha_2; // 1/rad^2
-    h.d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    let d2_generalized_force_1_d_alpha_d_alpha = i.reference_force * p.two_c_n_1_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     // ft^0.5*slug^0.5/rad^2
-    h.d2_eta_static_1_d_alpha_d_alpha = h.d2_generalized_force_1_d_alpha_d_alpha * p.inv_omega_1_2;
-    h.d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_1_d_alpha_d_alpha = d2_generalized_force_1_d_alpha_d_alpha * p.inv_omega_1_2;
+    let d2_generalized_force_2_d_alpha_d_alpha = i.reference_force * p.two_c_n_2_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     // ft^0.5*slug^0.5/rad^2
-    h.d2_eta_static_2_d_alpha_d_alpha = h.d2_generalized_force_2_d_alpha_d_alpha * p.inv_omega_2_2;
-    h.d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
+    h.d2_eta_static_2_d_alpha_d_alpha = d2_generalized_force_2_d_alpha_d_alpha * p.inv_omega_2_2;
+    let d2_generalized_force_3_d_alpha_d_alpha = i.reference_force * p.two_c_n_3_alpha_2; // ft^0.5*slug^0.5/s^2/rad^2
     // ft^0.5*slug^0.5/rad^2
-    h.d2_eta_static_3_d_alpha_d_alpha = h.d2_generalized_force_3_d_alpha_d_alpha * p.inv_omega_3_2;
-    h.d_slope_of_c_t_phi_in_incidence_d_alpha = p.six_c_t_phi_alpha_3 * i.incidence
+    h.d2_eta_static_3_d_alpha_d_alpha = d2_generalized_force_3_d_alpha_d_alpha * p.inv_omega_3_2;
+    let d_slope_of_c_t_phi_in_incidence_d_alpha = p.six_c_t_phi_alpha_3 * i.incidence
         + R::TWO * p.c_t_phi_alpha_2; // 1/rad^2
-    h.d2_c_t_d_alpha_d_alpha = h.d_slope_of_c_t_in_incidence_d_alpha
+    h.d2_c_t_d_alpha_d_alpha = d_slope_of_c_t_in_incidence_d_alpha
         + p.c_t_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
         + p.c_t_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
         + p.c_t_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
-        + u.phi * h.d_slope_of_c_t_phi_in_incidence_d_alpha; // 1/rad^2
+        + u.phi * d_slope_of_c_t_phi_in_incidence_d_alpha; // 1/rad^2
     h.d2_thrust_d_alpha_d_alpha = i.reference_force * h.d2_c_t_d_alpha_d_alpha; // lb/ft/rad^2
-    h.d2_c_d_d_alpha_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+    let d2_c_d_d_alpha_d_alpha = p.c_d_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
         + p.c_d_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
         + p.c_d_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
         + R::TWO * p.c_d_alpha_2; // 1/rad^2
-    h.d2_drag_d_alpha_d_alpha = i.reference_force * h.d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
+    h.d2_drag_d_alpha_d_alpha = i.reference_force * d2_c_d_d_alpha_d_alpha; // lb/ft/rad^2
 
     // Derivatives with respect to altitude
-    h.d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
+    let d2_gravity_turn_d_velocity_d_altitude = -(p.earth_curvature
         * s.d_radius_ratio_d_altitude + s.inv_velocity_2 * s.d_gravity_d_altitude); // 1/ft^2
+    let d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
+    let d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
+    let d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha * h.d2_c_t_d_velocity_d_altitude
+        + d2_c_l_d_velocity_d_altitude; // s/ft^2
+    let d2_force_turn_d_velocity_d_altitude =
+        s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
+        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
+        + i.normal_coefficient * d2_turn_factor_d_velocity_d_altitude
+        + i.turn_factor * d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
+    h.d2_gamma_rate_d_velocity_d_altitude = d2_force_turn_d_velocity_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
+
+    // Derivatives with respect to alpha
+    let d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    let sin_alpha_times_d2_c_t_d_velocity_d_alpha = i.sin_alpha * h.d2_c_t_d_velocity_d_alpha;
+    let d2_normal_coefficient_d_velocity_d_alpha = s.d_c_t_d_velocity * i.cos_alpha
+        + sin_alpha_times_d2_c_t_d_velocity_d_alpha
+        + d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_alpha
+        + i.turn_factor * d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
+
+    // Derivatives with respect to alpha_gust
+    let d2_normal_coefficient_d_velocity_d_alpha_gust = sin_alpha_times_d2_c_t_d_velocity_d_alpha
+        + d2_c_l_d_velocity_d_alpha; // s/ft/rad
+    h.d2_force_turn_d_velocity_d_alpha_gust = s.d_turn_factor_d_velocity
+        * s.d_normal_coefficient_d_alpha_gust + i.turn_factor
+        * d2_normal_coefficient_d_velocity_d_alpha_gust; // 1/ft
 }
 
 /// Fills a part of [`Curvatures`].
@@ -657,127 +663,92 @@ fn curvatures_part_3<R: Real>(
     h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
-    h.d2_turn_factor_d_velocity_d_altitude = p.half_s_over_m * s.d_density_d_altitude; // 1/ft^2
-    h.d2_c_l_d_velocity_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_altitude
-        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_altitude
-        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_altitude; // s/ft^2
-    h.d2_normal_coefficient_d_velocity_d_altitude = i.sin_alpha * h.d2_c_t_d_velocity_d_altitude
-        + h.d2_c_l_d_velocity_d_altitude; // s/ft^2
-    h.d2_force_turn_d_velocity_d_altitude =
-        s.d_normal_coefficient_d_velocity * s.d_turn_factor_d_altitude
-        + s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_altitude
-        + i.normal_coefficient * h.d2_turn_factor_d_velocity_d_altitude
-        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_altitude; // rad/ft^2
-    h.d2_gamma_rate_d_velocity_d_altitude = h.d2_force_turn_d_velocity_d_altitude
-        - i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude; // rad/ft^2
-
-    // Derivatives with respect to alpha
-    h.d2_c_l_d_velocity_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
-        + p.c_l_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
-        + p.c_l_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    h.sin_alpha_times_d2_c_t_d_velocity_d_alpha = i.sin_alpha * h.d2_c_t_d_velocity_d_alpha;
-    h.d2_normal_coefficient_d_velocity_d_alpha = s.d_c_t_d_velocity * i.cos_alpha
-        + h.sin_alpha_times_d2_c_t_d_velocity_d_alpha
-        + h.d2_c_l_d_velocity_d_alpha; // s/ft/rad
-    h.d2_force_turn_d_velocity_d_alpha = s.d_turn_factor_d_velocity * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * h.d2_normal_coefficient_d_velocity_d_alpha; // 1/ft
-
-    // Derivatives with respect to alpha_gust
-    h.d2_normal_coefficient_d_velocity_d_alpha_gust = h.sin_alpha_times_d2_c_t_d_velocity_d_alpha
-        + h.d2_c_l_d_velocity_d_alpha; // s/ft/rad
-    h.d2_force_turn_d_velocity_d_alpha_gust = s.d_turn_factor_d_velocity
-        * s.d_normal_coefficient_d_alpha_gust + i.turn_factor
-        * h.d2_normal_coefficient_d_velocity_d_alpha_gust; // 1/ft
-
-    // Derivatives with respect to altitude
-    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude * i.inv_velocity
+    let d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
-    h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
+    let d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    h.d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
+    let d2_c_l_d_altitude_d_altitude = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_altitude
         + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_altitude
         + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_altitude; // 1/ft^2
-    h.d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha * h.d2_c_t_d_altitude_d_altitude
-        + h.d2_c_l_d_altitude_d_altitude; // 1/ft^2
-    h.d2_force_turn_d_altitude_d_altitude =
+    let d2_normal_coefficient_d_altitude_d_altitude = i.sin_alpha * h.d2_c_t_d_altitude_d_altitude
+        + d2_c_l_d_altitude_d_altitude; // 1/ft^2
+    let d2_force_turn_d_altitude_d_altitude =
         R::TWO * s.d_normal_coefficient_d_altitude * s.d_turn_factor_d_altitude
-        + i.normal_coefficient * h.d2_turn_factor_d_altitude_d_altitude
-        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
-    h.d2_gamma_rate_d_altitude_d_altitude = h.d2_force_turn_d_altitude_d_altitude
-        - i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
+        + i.normal_coefficient * d2_turn_factor_d_altitude_d_altitude
+        + i.turn_factor * d2_normal_coefficient_d_altitude_d_altitude; // rad/s/ft^2
+    h.d2_gamma_rate_d_altitude_d_altitude = d2_force_turn_d_altitude_d_altitude
+        - i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude; // rad/s/ft^2
 
     // Derivatives with respect to alpha
-    h.d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+    let d2_c_l_d_altitude_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
         + p.c_l_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
         + p.c_l_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    h.sin_alpha_times_d2_c_t_d_altitude_d_alpha = i.sin_alpha * h.d2_c_t_d_altitude_d_alpha;
-    h.d2_normal_coefficient_d_altitude_d_alpha = s.d_c_t_d_altitude * i.cos_alpha
-        + h.sin_alpha_times_d2_c_t_d_altitude_d_alpha
-        + h.d2_c_l_d_altitude_d_alpha; // 1/ft/rad
+    let sin_alpha_times_d2_c_t_d_altitude_d_alpha = i.sin_alpha * h.d2_c_t_d_altitude_d_alpha;
+    let d2_normal_coefficient_d_altitude_d_alpha = s.d_c_t_d_altitude * i.cos_alpha
+        + sin_alpha_times_d2_c_t_d_altitude_d_alpha
+        + d2_c_l_d_altitude_d_alpha; // 1/ft/rad
     h.d2_force_turn_d_altitude_d_alpha = s.d_turn_factor_d_altitude * s.d_normal_coefficient_d_alpha
-        + i.turn_factor * h.d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
+        + i.turn_factor * d2_normal_coefficient_d_altitude_d_alpha; // 1/s/ft
 
     // Derivatives with respect to alpha_gust
-    h.d2_normal_coefficient_d_altitude_d_alpha_gust = h.sin_alpha_times_d2_c_t_d_altitude_d_alpha
-        + h.d2_c_l_d_altitude_d_alpha; // 1/ft/rad
+    let d2_normal_coefficient_d_altitude_d_alpha_gust = sin_alpha_times_d2_c_t_d_altitude_d_alpha
+        + d2_c_l_d_altitude_d_alpha; // 1/ft/rad
     h.d2_force_turn_d_altitude_d_alpha_gust = s.d_turn_factor_d_altitude
         * s.d_normal_coefficient_d_alpha_gust + i.turn_factor
-        * h.d2_normal_coefficient_d_altitude_d_alpha_gust; // 1/s/ft
+        * d2_normal_coefficient_d_altitude_d_alpha_gust; // 1/s/ft
+
+    // Derivatives with respect to alpha
+    let d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_l_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_l_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
+    let d_c_t_d_alpha_times_cos_alpha = s.d_c_t_d_alpha * i.cos_alpha;
+    let sin_alpha_times_d2_c_t_d_alpha_d_alpha = i.sin_alpha * h.d2_c_t_d_alpha_d_alpha;
+    let d2_normal_coefficient_d_alpha_d_alpha = R::TWO * d_c_t_d_alpha_times_cos_alpha
+        + sin_alpha_times_d2_c_t_d_alpha_d_alpha
+        + i.c_t * s.d_cos_alpha_d_alpha
+        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor * d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
+
+    // Derivatives with respect to alpha_gust
+    let d2_normal_coefficient_d_alpha_d_alpha_gust = d_c_t_d_alpha_times_cos_alpha
+        + sin_alpha_times_d2_c_t_d_alpha_d_alpha
+        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_d_alpha_gust = i.turn_factor
+        * d2_normal_coefficient_d_alpha_d_alpha_gust; // 1/s/rad
+    let d2_normal_coefficient_d_alpha_gust_d_alpha_gust = sin_alpha_times_d2_c_t_d_alpha_d_alpha
+        + d2_c_l_d_alpha_d_alpha; // 1/rad^2
+    h.d2_force_turn_d_alpha_gust_d_alpha_gust = i.turn_factor
+        * d2_normal_coefficient_d_alpha_gust_d_alpha_gust; // 1/s/rad
+
+    // Derivatives with respect to alpha
+    let d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
+    let d2_pitching_moment_d_velocity_d_alpha = p.c_bar
+        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
+            + i.reference_force * d2_c_m_d_velocity_d_alpha)
+        + p.z_t * h.d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
+    h.d2_pitch_acceleration_d_velocity_d_alpha = d2_pitching_moment_d_velocity_d_alpha * p.inv_i_yy; // 1/s/ft
+    let d2_c_m_d_altitude_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
+    let d2_pitching_moment_d_altitude_d_alpha = p.c_bar
+        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
+            + i.reference_force * d2_c_m_d_altitude_d_alpha)
+        + p.z_t * h.d2_thrust_d_altitude_d_alpha; // lb/ft/rad
+    h.d2_pitch_acceleration_d_altitude_d_alpha = d2_pitching_moment_d_altitude_d_alpha * p.inv_i_yy; // 1/s^2/ft
+    let d2_c_m_d_alpha_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
+        + p.c_m_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
+        + p.c_m_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
+        + R::TWO * p.c_m_alpha_2; // 1/rad^2
+    let d2_pitching_moment_d_alpha_d_alpha = p.z_t * h.d2_thrust_d_alpha_d_alpha
+        + p.c_bar * i.reference_force * d2_c_m_d_alpha_d_alpha; // lb/rad^2
+    h.d2_pitch_acceleration_d_alpha_d_alpha = d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
 }
 
 /// Fills a part of [`Curvatures`].
 #[inline(always)]
-fn curvatures_part_4<R: Real>(h: &mut Curvatures<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>) {
-    // Derivatives with respect to alpha
-    h.d2_c_l_d_alpha_d_alpha = p.c_l_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_l_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_l_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha; // 1/rad^2
-    h.d_c_t_d_alpha_times_cos_alpha = s.d_c_t_d_alpha * i.cos_alpha;
-    h.sin_alpha_times_d2_c_t_d_alpha_d_alpha = i.sin_alpha * h.d2_c_t_d_alpha_d_alpha;
-    h.d2_normal_coefficient_d_alpha_d_alpha = R::TWO * h.d_c_t_d_alpha_times_cos_alpha
-        + h.sin_alpha_times_d2_c_t_d_alpha_d_alpha
-        + i.c_t * s.d_cos_alpha_d_alpha
-        + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    h.d2_force_turn_d_alpha_d_alpha = i.turn_factor * h.d2_normal_coefficient_d_alpha_d_alpha; // 1/s/rad
-
-    // Derivatives with respect to alpha_gust
-    h.d2_normal_coefficient_d_alpha_d_alpha_gust = h.d_c_t_d_alpha_times_cos_alpha
-        + h.sin_alpha_times_d2_c_t_d_alpha_d_alpha
-        + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    h.d2_force_turn_d_alpha_d_alpha_gust = i.turn_factor
-        * h.d2_normal_coefficient_d_alpha_d_alpha_gust; // 1/s/rad
-    h.d2_normal_coefficient_d_alpha_gust_d_alpha_gust = h.sin_alpha_times_d2_c_t_d_alpha_d_alpha
-        + h.d2_c_l_d_alpha_d_alpha; // 1/rad^2
-    h.d2_force_turn_d_alpha_gust_d_alpha_gust = i.turn_factor
-        * h.d2_normal_coefficient_d_alpha_gust_d_alpha_gust; // 1/s/rad
-
-    // Derivatives with respect to alpha
-    h.d2_c_m_d_velocity_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_velocity_d_alpha
-        + p.c_m_eta_2 * h.d2_eta_static_2_d_velocity_d_alpha
-        + p.c_m_eta_3 * h.d2_eta_static_3_d_velocity_d_alpha; // s/ft/rad
-    h.d2_pitching_moment_d_velocity_d_alpha = p.c_bar
-        * (s.d_reference_force_d_velocity * s.d_c_m_d_alpha
-            + i.reference_force * h.d2_c_m_d_velocity_d_alpha)
-        + p.z_t * h.d2_thrust_d_velocity_d_alpha; // lb*s/ft/rad
-    h.d2_pitch_acceleration_d_velocity_d_alpha = h.d2_pitching_moment_d_velocity_d_alpha
-        * p.inv_i_yy; // 1/s/ft
-    h.d2_c_m_d_altitude_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_altitude_d_alpha
-        + p.c_m_eta_2 * h.d2_eta_static_2_d_altitude_d_alpha
-        + p.c_m_eta_3 * h.d2_eta_static_3_d_altitude_d_alpha; // 1/ft/rad
-    h.d2_pitching_moment_d_altitude_d_alpha = p.c_bar
-        * (s.d_reference_force_d_altitude * s.d_c_m_d_alpha
-            + i.reference_force * h.d2_c_m_d_altitude_d_alpha)
-        + p.z_t * h.d2_thrust_d_altitude_d_alpha; // lb/ft/rad
-    h.d2_pitch_acceleration_d_altitude_d_alpha = h.d2_pitching_moment_d_altitude_d_alpha
-        * p.inv_i_yy; // 1/s^2/ft
-    h.d2_c_m_d_alpha_d_alpha = p.c_m_eta_1 * h.d2_eta_static_1_d_alpha_d_alpha
-        + p.c_m_eta_2 * h.d2_eta_static_2_d_alpha_d_alpha
-        + p.c_m_eta_3 * h.d2_eta_static_3_d_alpha_d_alpha
-        + R::TWO * p.c_m_alpha_2; // 1/rad^2
-    h.d2_pitching_moment_d_alpha_d_alpha = p.z_t * h.d2_thrust_d_alpha_d_alpha
-        + p.c_bar * i.reference_force * h.d2_c_m_d_alpha_d_alpha; // lb/rad^2
-    h.d2_pitch_acceleration_d_alpha_d_alpha = h.d2_pitching_moment_d_alpha_d_alpha * p.inv_i_yy; // 1/s^2/rad
-
+fn curvatures_part_4<R: Real>(h: &mut Curvatures<R>, i: &Intermediates<R>, s: &Slopes<R>) {
     // Further values
     h.cos_alpha_times_d2_thrust_d_velocity_d_alpha = i.cos_alpha * h.d2_thrust_d_velocity_d_alpha;
     h.cos_alpha_times_d2_thrust_d_altitude_d_alpha = i.cos_alpha * h.d2_thrust_d_altitude_d_alpha;
@@ -794,7 +765,7 @@ pub fn curvatures<R: Real>(
     curvatures_part_1(&mut h, x, p, i, s);
     curvatures_part_2(&mut h, u, p, i, s);
     curvatures_part_3(&mut h, x, p, i, s);
-    curvatures_part_4(&mut h, p, i, s);
+    curvatures_part_4(&mut h, i, s);
     h
 }
 

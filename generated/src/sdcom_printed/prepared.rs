@@ -31,12 +31,6 @@ ahv_core::record! {
         chi_diffusion_3,
         /// Lift coefficient per elevator deflection that the slaved canard leaves, 1/rad.
         elevator_lift,
-        /// Diffusion of the coloured noise of mode 1 over sigma/omega, dimensionless.
-        chi_share_1,
-        /// Diffusion of the coloured noise of mode 2 over sigma/omega, dimensionless.
-        chi_share_2,
-        /// Diffusion of the coloured noise of mode 3 over sigma/omega, dimensionless.
-        chi_share_3,
         inv_h_s, inv_m, c_d_delta_e_plus_c_d_delta_c_times_canard_gain, inv_omega_1_2, inv_omega_2_2, inv_omega_3_2,
         half_s_over_m, inv_i_yy, z_t_c_t_eta_1_plus_c_bar_c_m_eta_1, z_t_c_t_eta_2_plus_c_bar_c_m_eta_2,
         z_t_c_t_eta_3_plus_c_bar_c_m_eta_3, c_m_delta_e_plus_canard_gain_c_m_delta_c_times_c_bar_over_i_yy, s_over_m,
@@ -66,10 +60,9 @@ ahv_core::record! {
         c_t_eta_3_over_m, two_c_bar_c_m_alpha_2_over_i_yy, c_bar_c_m_alpha, chi_diffusion_2_shared_noise,
         chi_diffusion_2_own_noise, chi_diffusion_3_shared_noise, chi_diffusion_3_own_noise, w_alpha_w_gamma, w_alpha_2,
         w_alpha_w_q, half_w_alpha_2, three_c_t_alpha_3, two_c_t_alpha_2, three_c_t_phi_alpha_3, two_c_t_phi_alpha_2,
-        two_c_d_alpha_2, inv_c_l_delta_c, one_minus_moment_matching, inv_zeta_1, moment_matching_over_zeta_1,
-        inv_zeta_2, moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3,
-        c_m_delta_e_plus_canard_gain_c_m_delta_c, inv_zeta_1_2, inv_zeta_2_2, inv_zeta_3_2,
-        one_minus_variance_matching_minus_moment_matching, inv_omega_1, inv_omega_2, inv_omega_3, inv_c_l_delta_c_2,
+        two_c_d_alpha_2, inv_c_l_delta_c, inv_zeta_1, moment_matching_over_zeta_1, inv_zeta_2,
+        moment_matching_over_zeta_2, inv_zeta_3, moment_matching_over_zeta_3, c_m_delta_e_plus_canard_gain_c_m_delta_c,
+        inv_omega_1, inv_omega_2, inv_omega_3, inv_c_l_delta_c_2,
     }
     from Parameters {
         rho_0, h_0,
@@ -113,20 +106,20 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.elevator_lift = p.c_l_delta_e * (R::ONE - p.canard_slaving); // 1/rad
 
     // Coloured noise, (23)
-    c.one_minus_moment_matching = R::ONE - p.moment_matching;
+    let one_minus_moment_matching = R::ONE - p.moment_matching;
     c.inv_zeta_1 = p.zeta_1.recip();
     c.moment_matching_over_zeta_1 = p.moment_matching * c.inv_zeta_1;
-    c.d_chi_decay_1_d_omega_1 = p.zeta_1 * c.one_minus_moment_matching
+    c.d_chi_decay_1_d_omega_1 = p.zeta_1 * one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_1; // 1/rad
     c.chi_decay_1 = p.omega_1 * c.d_chi_decay_1_d_omega_1; // 1/s
     c.inv_zeta_2 = p.zeta_2.recip();
     c.moment_matching_over_zeta_2 = p.moment_matching * c.inv_zeta_2;
-    c.d_chi_decay_2_d_omega_2 = p.zeta_2 * c.one_minus_moment_matching
+    c.d_chi_decay_2_d_omega_2 = p.zeta_2 * one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_2; // 1/rad
     c.chi_decay_2 = p.omega_2 * c.d_chi_decay_2_d_omega_2; // 1/s
     c.inv_zeta_3 = p.zeta_3.recip();
     c.moment_matching_over_zeta_3 = p.moment_matching * c.inv_zeta_3;
-    c.d_chi_decay_3_d_omega_3 = p.zeta_3 * c.one_minus_moment_matching
+    c.d_chi_decay_3_d_omega_3 = p.zeta_3 * one_minus_moment_matching
         + R::HALF * c.moment_matching_over_zeta_3; // 1/rad
     c.chi_decay_3 = p.omega_3 * c.d_chi_decay_3_d_omega_3; // 1/s
 
@@ -142,45 +135,43 @@ fn prepare_part_1<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.d_c_n_3_d_delta_e = p.c_n_3_delta_e + p.c_n_3_delta_c * c.canard_gain; // (ft/slug)^0.5/rad
 
     // Derivatives with respect to parameters
-    c.inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;
+    let inv_zeta_1_2 = c.inv_zeta_1 * c.inv_zeta_1;
     c.d_chi_decay_1_d_zeta_1 = p.omega_1
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_1_2) + R::ONE); // 1/s
-    c.inv_zeta_2_2 = c.inv_zeta_2 * c.inv_zeta_2;
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_1_2) + R::ONE); // 1/s
+    let inv_zeta_2_2 = c.inv_zeta_2 * c.inv_zeta_2;
     c.d_chi_decay_2_d_zeta_2 = p.omega_2
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_2_2) + R::ONE); // 1/s
-    c.inv_zeta_3_2 = c.inv_zeta_3 * c.inv_zeta_3;
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_2_2) + R::ONE); // 1/s
+    let inv_zeta_3_2 = c.inv_zeta_3 * c.inv_zeta_3;
     c.d_chi_decay_3_d_zeta_3 = p.omega_3
-        * (p.moment_matching * (-R::ONE - R::HALF * c.inv_zeta_3_2) + R::ONE); // 1/s
+        * (p.moment_matching * (-R::ONE - R::HALF * inv_zeta_3_2) + R::ONE); // 1/s
     c.d_chi_decay_1_d_moment_matching = p.omega_1 * (R::HALF * c.inv_zeta_1 - p.zeta_1); // 1/s
     c.d_chi_decay_2_d_moment_matching = p.omega_2 * (R::HALF * c.inv_zeta_2 - p.zeta_2); // 1/s
     c.d_chi_decay_3_d_moment_matching = p.omega_3 * (R::HALF * c.inv_zeta_3 - p.zeta_3); // 1/s
 
     // Coloured noise, (23)
-    c.one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
-    c.chi_share_1 = p.zeta_1 * c.one_minus_variance_matching_minus_moment_matching
+    let one_minus_variance_matching_minus_moment_matching = R::ONE - p.variance_matching - p.moment_matching;
+    let chi_share_1 = p.zeta_1 * one_minus_variance_matching_minus_moment_matching
         + R::from_f64(0.7071067811865475) * p.variance_matching
         + R::HALF * c.moment_matching_over_zeta_1;
     c.inv_omega_1 = p.omega_1.recip();
-    c.chi_diffusion_1 = c.chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
+    c.chi_diffusion_1 = chi_share_1 * p.sigma_1 * c.inv_omega_1; // (ft*slug)^0.5/s^0.5
+    let chi_share_2 = p.zeta_2 * one_minus_variance_matching_minus_moment_matching
+        + R::from_f64(0.7071067811865475) * p.variance_matching
+        + R::HALF * c.moment_matching_over_zeta_2;
+    c.inv_omega_2 = p.omega_2.recip();
+    c.chi_diffusion_2 = chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
+    let chi_share_3 = p.zeta_3 * one_minus_variance_matching_minus_moment_matching
+        + R::from_f64(0.7071067811865475) * p.variance_matching
+        + R::HALF * c.moment_matching_over_zeta_3;
+    c.inv_omega_3 = p.omega_3.recip();
+    c.chi_diffusion_3 = chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
+
+    // Noise of the modes, (16)
+    c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
 }
 
 /// Fills a part of [`Prepared`].
 fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Coloured noise, (23)
-    c.chi_share_2 = p.zeta_2 * c.one_minus_variance_matching_minus_moment_matching
-        + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * c.moment_matching_over_zeta_2;
-    c.inv_omega_2 = p.omega_2.recip();
-    c.chi_diffusion_2 = c.chi_share_2 * p.sigma_2 * c.inv_omega_2; // (ft*slug)^0.5/s^0.5
-    c.chi_share_3 = p.zeta_3 * c.one_minus_variance_matching_minus_moment_matching
-        + R::from_f64(0.7071067811865475) * p.variance_matching
-        + R::HALF * c.moment_matching_over_zeta_3;
-    c.inv_omega_3 = p.omega_3.recip();
-    c.chi_diffusion_3 = c.chi_share_3 * p.sigma_3 * c.inv_omega_3; // (ft*slug)^0.5/s^0.5
-
-    // Noise of the modes, (16)
-    c.own_noise = ((R::ONE - p.shared_noise) * (R::ONE + p.shared_noise)).sqrt();
-
     // Further values
     c.inv_h_s = p.h_s.recip();
     c.inv_m = p.m.recip();
@@ -222,11 +213,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
     c.half_inv_omega_3_2 = R::HALF * c.inv_omega_3_2;
     c.inv_h_s_2 = c.inv_h_s * c.inv_h_s;
     c.two_g_earth_curvature_over_r_e = R::TWO * p.g * c.earth_curvature * c.inv_r_e;
-}
-
-/// Fills a part of [`Prepared`].
-fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
-    // Further values
     c.minus_two_over_omega_1 = R::from_f64(-2.0) * c.inv_omega_1;
     c.minus_two_over_omega_2 = R::from_f64(-2.0) * c.inv_omega_2;
     c.minus_two_over_omega_3 = R::from_f64(-2.0) * c.inv_omega_3;
@@ -262,6 +248,11 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
         * c.inv_c_l_delta_c;
     c.c_bar_c_m_delta_c_canard_slaving_over_i_yy_c_l_delta_c = p.c_bar * c.inv_i_yy * p.c_m_delta_c * p.canard_slaving
         * c.inv_c_l_delta_c;
+}
+
+/// Fills a part of [`Prepared`].
+fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
+    // Further values
     c.c_bar_c_m_delta_c_canard_slaving_c_l_delta_e_inv_c_l_delta_c_2_over_i_yy = p.c_bar * c.inv_i_yy * p.c_m_delta_c
         * p.canard_slaving * p.c_l_delta_e * c.inv_c_l_delta_c_2;
     c.c_bar_over_i_yy = p.c_bar * c.inv_i_yy;

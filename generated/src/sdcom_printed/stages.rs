@@ -146,7 +146,11 @@ fn intermediates_part_1<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
 
     // Motion, (1)
     i.altitude_rate = x.velocity * i.sin_gamma; // ft/s
+}
 
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>) {
     // Strict-feedback form, (29)
     i.cos_alpha_c_t_eta_1_minus_c_d_eta_1 = i.cos_alpha * p.c_t_eta_1 - p.c_d_eta_1;
     i.generalized_force_1_inv_omega_1_2 = i.generalized_force_1 * p.inv_omega_1_2;
@@ -160,12 +164,6 @@ fn intermediates_part_1<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
             + i.cos_alpha_c_t_eta_3_minus_c_d_eta_3
                 * i.generalized_force_3_inv_omega_3_2); // ft/s^2
     i.c_t_alpha_alpha = p.c_t_alpha * x.alpha;
-}
-
-/// Fills a part of [`Intermediates`].
-#[inline(always)]
-fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>) {
-    // Strict-feedback form, (29)
     i.f_velocity = i.reference_force * p.inv_m
         * (i.cos_alpha * (i.c_t_alpha_alpha + p.c_t_0) - p.c_d_alpha * x.alpha
             - p.c_d_delta_e_plus_c_d_delta_c_times_canard_gain * u.delta_e - p.c_d_0)
@@ -409,7 +407,11 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     // Derivatives with respect to gamma
     s.d_altitude_rate_d_gamma = x.velocity * i.cos_gamma; // ft/s/rad
     s.d_cos_gamma_d_gamma = -i.sin_gamma; // 1/rad
+}
 
+/// Fills a part of [`Slopes`].
+#[inline(always)]
+fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to alpha
     s.d_cos_alpha_d_alpha = -i.sin_alpha; // 1/rad
     s.sum_of_chi_c_t_eta = x.chi_1 * p.c_t_eta_1 + x.chi_2 * p.c_t_eta_2 + x.chi_3 * p.c_t_eta_3;
@@ -427,12 +429,6 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
     s.d_generalized_force_2_d_alpha = i.reference_force * s.d_c_n_2_d_alpha; // ft^0.5*slug^0.5/s^2/rad
     s.d_c_n_3_d_alpha = p.two_c_n_3_alpha_2 * x.alpha + p.c_n_3_alpha; // (ft/slug)^0.5/rad
     s.d_generalized_force_3_d_alpha = i.reference_force * s.d_c_n_3_d_alpha; // ft^0.5*slug^0.5/s^2/rad
-}
-
-/// Fills a part of [`Slopes`].
-#[inline(always)]
-fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermediates<R>) {
-    // Derivatives with respect to alpha
     s.slope_of_g_velocity_in_cos_alpha = s.c_t_phi_alpha_alpha_plus_table_c_t_phi
         * i.reference_force * p.inv_m; // ft/s^2
     s.slope_of_gamma_rate_printed_in_sin_alpha = i.turn_factor * s.sum_of_chi_c_t_eta; // rad/s
@@ -490,7 +486,11 @@ fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
         s.slope_of_f_gamma_eta_in_generalized_force_1 * d_generalized_force_1_d_delta_e
         + s.slope_of_f_gamma_eta_in_generalized_force_2 * d_generalized_force_2_d_delta_e
         + s.slope_of_f_gamma_eta_in_generalized_force_3 * d_generalized_force_3_d_delta_e; // 1/s
+}
 
+/// Fills a part of [`Slopes`].
+#[inline(always)]
+fn slopes_part_3<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>) {
     // Derivatives with respect to delta_c
     let d_generalized_force_1_d_delta_c = i.reference_force * p.c_n_1_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
     let d_generalized_force_2_d_delta_c = i.reference_force * p.c_n_2_delta_c_canard_command; // ft^0.5*slug^0.5/s^2/rad
@@ -523,6 +523,7 @@ pub fn slopes<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, i: &Intermed
     let mut s = Slopes::splat(R::ZERO);
     slopes_part_1(&mut s, x, u, p, i);
     slopes_part_2(&mut s, x, u, p, i);
+    slopes_part_3(&mut s, x, p, i);
     s
 }
 
@@ -550,10 +551,8 @@ ahv_core::record! {
         d2_gamma_rate_printed_d_altitude_d_chi_2, d2_gamma_rate_printed_d_altitude_d_chi_3,
         d_slope_of_f_gamma_eta_in_sin_alpha_d_alpha, d2_gamma_rate_printed_d_alpha_d_chi_1,
         d2_gamma_rate_printed_d_alpha_d_chi_2, d2_gamma_rate_printed_d_alpha_d_chi_3,
-        cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha, d2_density_ratio_d_altitude_d_altitude,
-        d2_density_d_altitude_d_altitude, radius_ratio_3, d2_radius_ratio_d_altitude_d_altitude,
-        power_2_of_d_radius_ratio_d_altitude, d2_gravity_turn_d_velocity_d_altitude,
-        d2_gravity_turn_d_altitude_d_altitude, d_slope_of_f_alpha_in_sin_alpha_d_alpha,
+        cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha, d2_density_d_altitude_d_altitude,
+        d2_radius_ratio_d_altitude_d_altitude, d2_gravity_turn_d_velocity_d_altitude,
     }
 }
 
@@ -591,15 +590,15 @@ fn curvatures_part_1<R: Real>(
 
     // Derivatives with respect to altitude
     h.density_ratio_over_h_s = i.density_ratio * p.inv_h_s;
-    h.d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
-    h.d2_density_d_altitude_d_altitude = p.rho_0 * h.d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
+    let d2_density_ratio_d_altitude_d_altitude = h.density_ratio_over_h_s * p.inv_h_s; // 1/ft^2
+    h.d2_density_d_altitude_d_altitude = p.rho_0 * d2_density_ratio_d_altitude_d_altitude; // slug/ft^5
     h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
         * h.d2_density_d_altitude_d_altitude; // lb/ft^4
-    h.radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
-    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * h.radius_ratio_3; // 1/ft^2
-    h.power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
+    let radius_ratio_3 = i.radius_ratio * i.radius_ratio_2;
+    h.d2_radius_ratio_d_altitude_d_altitude = p.two_earth_curvature_2 * radius_ratio_3; // 1/ft^2
+    let power_2_of_d_radius_ratio_d_altitude = s.d_radius_ratio_d_altitude * s.d_radius_ratio_d_altitude;
     h.d2_gravity_d_altitude_d_altitude = p.g
-        * (R::TWO * h.power_2_of_d_radius_ratio_d_altitude
+        * (R::TWO * power_2_of_d_radius_ratio_d_altitude
             + R::TWO * i.radius_ratio * h.d2_radius_ratio_d_altitude_d_altitude); // 1/s^2/ft
     h.d2_reference_force_d_altitude_d_altitude = p.s * h.d2_dynamic_pressure_d_altitude_d_altitude; // lb/ft^3
     h.d2_generalized_force_1_d_altitude_d_altitude = i.c_n_1
@@ -628,13 +627,7 @@ fn curvatures_part_1<R: Real>(
         i.sin_alpha_c_t_eta_1_plus_c_l_eta_1 * p.inv_omega_1_2 * s.d_generalized_force_1_d_altitude
         + i.sin_alpha_c_t_eta_2_plus_c_l_eta_2 * p.inv_omega_2_2 * s.d_generalized_force_2_d_altitude
         + i.sin_alpha_c_t_eta_3_plus_c_l_eta_3 * p.inv_omega_3_2 * s.d_generalized_force_3_d_altitude; // rad/ft
-}
 
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
     // Derivatives with respect to alpha
     h.d_slope_of_gamma_rate_printed_in_turn_factor_d_alpha = s.sum_of_chi_c_t_eta * i.cos_alpha;
     h.d_slope_of_f_gamma_eta_in_turn_factor_d_alpha = s.sum_of_generalized_force_inv_omega_2_c_t_eta * i.cos_alpha
@@ -646,7 +639,13 @@ fn curvatures_part_2<R: Real>(
     // Derivatives with respect to chi_1
     h.d2_gamma_rate_printed_d_velocity_d_chi_1 = s.d_turn_factor_d_velocity
         * i.sin_alpha_c_t_eta_1_plus_c_l_eta_1; // rad/ft^1.5/slug^0.5
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to chi_2
     h.d2_gamma_rate_printed_d_velocity_d_chi_2 = s.d_turn_factor_d_velocity
         * i.sin_alpha_c_t_eta_2_plus_c_l_eta_2; // rad/ft^1.5/slug^0.5
@@ -658,7 +657,7 @@ fn curvatures_part_2<R: Real>(
     // Derivatives with respect to altitude
     h.d2_turn_factor_d_altitude_d_altitude = p.half_s_over_m * x.velocity
         * h.d2_density_d_altitude_d_altitude; // 1/s/ft^2
-    h.d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude * i.inv_velocity
+    let d2_gravity_turn_d_altitude_d_altitude = h.d2_gravity_d_altitude_d_altitude * i.inv_velocity
         - x.velocity * p.earth_curvature * h.d2_radius_ratio_d_altitude_d_altitude; // 1/s/ft^2
 
     // Derivatives with respect to chi_1
@@ -691,12 +690,12 @@ fn curvatures_part_2<R: Real>(
     h.d2_gamma_rate_printed_d_alpha_d_chi_3 = i.cos_alpha * i.turn_factor * p.c_t_eta_3; // 1/s/ft^0.5/slug^0.5
 
     // Derivatives with respect to alpha
-    h.d_slope_of_f_alpha_in_sin_alpha_d_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
+    let d_slope_of_f_alpha_in_sin_alpha_d_alpha = -s.slope_of_g_gamma_in_sin_alpha; // 1/s
 
     // Further values
     h.cos_gamma_times_d2_gravity_turn_d_velocity_d_altitude = i.cos_gamma * h.d2_gravity_turn_d_velocity_d_altitude;
-    h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma * h.d2_gravity_turn_d_altitude_d_altitude;
-    h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha * h.d_slope_of_f_alpha_in_sin_alpha_d_alpha;
+    h.cos_gamma_times_d2_gravity_turn_d_altitude_d_altitude = i.cos_gamma * d2_gravity_turn_d_altitude_d_altitude;
+    h.cos_alpha_times_d_slope_of_f_alpha_in_sin_alpha_d_alpha = i.cos_alpha * d_slope_of_f_alpha_in_sin_alpha_d_alpha;
 }
 
 /// Computes [`Curvatures`].

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ..contents import Contents
 from ..modelling import POSITIVE, Expr, Model, Parameter, Variable
-from ..table import Table
 
 FLEXIBLE = "(ft*slug)^0.5"  # ft·(slug/ft)^½, a mass-normalised modal coordinate
 FORCE = f"{FLEXIBLE}/s^2"  # generalized force
@@ -46,7 +46,7 @@ def modal_parameters(modes: range) -> tuple[Parameter, ...]:
     return tuple(map(frequency, suffixes)) + tuple(map(damping, suffixes))
 
 
-def modes_of(table: Table) -> range:
+def modes_of(table: Contents) -> range:
     """The numbers of the flexible modes of a table."""
     count = sum(p.key.startswith("omega_") for p in table.schema.parameters.get("modes", ()))
     return range(1, count + 1)

@@ -1,12 +1,12 @@
 """A sensor with coloured noise: it measures a state with an error that is a Gauss-Markov process."""
 
-from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Parameter, Part, PartModel, Variable, sqrt
+from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Parameter, Part, PartModel, State, Variable, sqrt
 
 TIME = Parameter("tau", r"\tau_m", "s", "correlation time of the error of the sensor", POSITIVE)
 WIENER = Variable("wiener", "w_m", "s^0.5", "Wiener increment that drives the error of the sensor")
 
 
-def part(state: Variable) -> Part:
+def part(state: State) -> Part:
     """A sensor of `state`, whose measurement is an output."""
     rms = Parameter(
         "sigma", r"\sigma_m", state.unit, f"root mean square error of the measured {state.doc}", NOT_NEGATIVE

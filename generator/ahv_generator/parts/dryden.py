@@ -4,13 +4,18 @@ Of white noise of unit intensity the filter sigma sqrt(T) (1 + sqrt(3) T s) / (1
 root mean square sigma. It is a lag, followed by a second one that the first one passes in part.
 """
 
-from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Parameter, Part, PartModel, Variable, sqrt
+from typing import Annotated
+
+from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Join, Parameter, Part, PartModel, Variable, sqrt
+
+Angle = Annotated[Variable, Join("state", "rad")]
+Speed = Annotated[Variable, Join("state", "ft/s")]
 
 LENGTH = Parameter("length", "L_w", "ft", "length of the turbulence", POSITIVE)
 WIENER = Variable("wiener", "w_g", "s^0.5", "Wiener increment that drives the gust")
 
 
-def part(state: Variable, speed: Variable) -> Part:
+def part(state: Angle, speed: Speed) -> Part:
     """A gust whose incidence is added to `state`, an angle, where the vehicle flies at `speed`."""
     rms = Parameter("sigma", r"\sigma_w", speed.unit, "root mean square of the vertical gust", NOT_NEGATIVE)
     first = Variable("first", "w_1", speed.unit, "vertical gust behind one lag")

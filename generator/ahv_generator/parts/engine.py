@@ -1,12 +1,12 @@
 """An engine whose throttle follows its command with two lags: that of the fuel valve, then that of the combustor."""
 
-from ahv_generator.modelling import POSITIVE, Parameter, Part, PartModel, Variable
+from ahv_generator.modelling import POSITIVE, Input, Parameter, Part, PartModel, Variable
 
 VALVE_LAG = Parameter("tau_valve", r"\tau_v", "s", "time constant of the fuel valve", POSITIVE)
 COMBUSTOR_LAG = Parameter("tau_combustor", r"\tau_b", "s", "time constant of the combustor", POSITIVE)
 
 
-def part(input: Variable) -> Part:
+def part(input: Input) -> Part:
     """An engine that drives `input`, a throttle setting or an equivalence ratio."""
     command = Variable("command", f"{input.symbol}^c", input.unit, f"command of the {input.doc}", input.interval)
     valve = Variable("valve", f"{input.symbol}^v", input.unit, f"{input.doc} at the fuel valve", input.interval)

@@ -1,12 +1,12 @@
 """An actuator whose position follows its command as a damped oscillator."""
 
-from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Parameter, Part, PartModel, Variable
+from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Input, Parameter, Part, PartModel, Variable
 
 OMEGA = Parameter("omega", r"\omega", "rad/s", "natural frequency of the actuator", POSITIVE)
 ZETA = Parameter("zeta", r"\zeta", "1", "damping ratio of the actuator", NOT_NEGATIVE)
 
 
-def part(input: Variable) -> Part:
+def part(input: Input) -> Part:
     """An actuator that drives `input`."""
     command = Variable("command", f"{input.symbol}^c", input.unit, f"command of the {input.doc}", input.interval)
     position = Variable("position", f"{input.symbol}^a", input.unit, f"{input.doc} of the actuator", input.interval)

@@ -1,12 +1,12 @@
 """A sensor with white noise behind a lag: what it measures follows a state and is driven by the noise."""
 
-from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Parameter, Part, PartModel, Variable
+from ahv_generator.modelling import NOT_NEGATIVE, POSITIVE, Parameter, Part, PartModel, State, Variable
 
 LAG = Parameter("tau", r"\tau_m", "s", "time constant of the sensor", POSITIVE)
 WIENER = Variable("wiener", "w_m", "s^0.5", "Wiener increment that disturbs the sensor")
 
 
-def part(state: Variable) -> Part:
+def part(state: State) -> Part:
     """A sensor of `state`, whose measurement is a state."""
     doc = f"intensity of the white noise of the measured {state.doc}"
     intensity = Parameter("sigma", r"\sigma_m", f"{state.unit}/s^0.5", doc, NOT_NEGATIVE)

@@ -63,16 +63,6 @@ impl Real for Called {
     }
 
     #[inline(never)]
-    fn sin(self) -> Self {
-        Self(self.0.sin())
-    }
-
-    #[inline(never)]
-    fn cos(self) -> Self {
-        Self(self.0.cos())
-    }
-
-    #[inline(never)]
     fn exp(self) -> Self {
         Self(self.0.exp())
     }
@@ -120,11 +110,6 @@ impl Real for Called {
     #[inline(never)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt())
-    }
-
-    #[inline(never)]
-    fn recip(self) -> Self {
-        Self(self.0.recip())
     }
 
     fn abs(self) -> Self {

@@ -6,273 +6,146 @@ use serde_json::Value;
 
 use crate::shell;
 
-/// A command line, and facts of its JSON: `pointer = value`, `pointer ~ value` for a number of five digits, or `#pointer = length` of a list or an object.
-pub(super) type Question = (&'static str, &'static [&'static str]);
+// Command lines, and below each facts of its JSON: `pointer = value`, `pointer ~ value` for a number of five digits, or
+// `#pointer = length` of a list or an object.
 
 /// Two flexible modes and a set `heavy`.
-pub(super) const TWO_MODES: &[Question] = &[
-    (
-        "trim --model sdcom --set heavy",
-        &[
-            "/converged = true",
-            "/set = \"heavy\"",
-            "#/eta = 2",
-            "#/state = 7",
-            "/in_validity_box = true",
-        ],
-    ),
-    (
-        "trim --model dcom",
-        &[
-            "/converged = true",
-            "/set = \"nominal\"",
-            "#/eta = 2",
-            "#/state = 9",
-        ],
-    ),
-    (
-        "trim --model dcom --table tables-of-own-models/two_mode.toml --set heavy",
-        &["/converged = true", "/set = \"heavy\""],
-    ),
-    (
-        "linearize --model dcom --outputs theta",
-        &[
-            "/outputs = [\"theta\"]",
-            "#/A = 9",
-            "/C = [[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]",
-        ],
-    ),
-    (
-        "poles --model dcom",
-        &["#/poles = 9", "/modes/8/name = \"flexible 2\""],
-    ),
-    (
-        "poles --model sdcom --set heavy",
-        &["#/poles = 7", "/modes/6/name = \"coloured noise 2\""],
-    ),
-    (
-        "lqr --model sdcom --set heavy --out gains.json",
-        &["#/gain = 2", "#/gain/0 = 7"],
-    ),
-    (
-        "montecarlo --model sdcom --set heavy --feedback gains.json --members 16 --t-end 0.5 --dt 0.01 --disperse",
-        &[
-            "/members = 16",
-            "/lost = 0",
-            "/dispersed = true",
-            "/feedback = true",
-            "/scheme = \"splitting\"",
-        ],
-    ),
-    (
-        "montecarlo --model dcom --members 16 --t-end 0.2 --dt 0.01",
-        &[
-            "/members = 16",
-            "/lost = 0",
-            "/scheme = \"heun\"",
-            "#/mean = 9",
-        ],
-    ),
-    (
-        "rare --model sdcom --set heavy --feedback gains.json --t-end 0.3 --dt 0.01 --passes chi_2=0.05 --effort 20 \
-         --repetitions 10",
-        &[
-            "/state = \"chi_2\"",
-            "/repetitions = 10",
-            "/complete = true",
-        ],
-    ),
-    (
-        "covariance --model sdcom --t-end 0.2 --dt 0.01 --members 32",
-        &["/members = 32", "#/times/0/linear_std = 7"],
-    ),
-    (
-        "disperse --model sdcom --members 30",
-        &["/members = 30", "/complete = true"],
-    ),
-    (
-        "simulate --model dcom --set heavy --stochastic --t-end 0.2 --dt 0.01 --out flight.csv",
-        &["/steps = 20", "#/final_state = 9"],
-    ),
-];
+pub(super) const TWO_MODES: &str = r##"
+trim --model sdcom --set heavy
+    /converged = true; /set = "heavy"; #/eta = 2; #/state = 7; /in_validity_box = true
+trim --model dcom
+    /converged = true; /set = "nominal"; #/eta = 2; #/state = 9
+trim --model dcom --table tables-of-own-models/two_mode.toml --set heavy
+    /converged = true; /set = "heavy"
+linearize --model dcom --outputs theta
+    /outputs = ["theta"]; #/A = 9; /C = [[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]]
+poles --model dcom
+    #/poles = 9; /modes/8/name = "flexible 2"
+poles --model sdcom --set heavy
+    #/poles = 7; /modes/6/name = "coloured noise 2"
+lqr --model sdcom --set heavy --out gains.json
+    #/gain = 2; #/gain/0 = 7
+montecarlo --model sdcom --set heavy --feedback gains.json --members 16 --t-end 0.5 --dt 0.01 --disperse
+    /members = 16; /lost = 0; /dispersed = true; /feedback = true; /scheme = "splitting"
+montecarlo --model dcom --members 16 --t-end 0.2 --dt 0.01
+    /members = 16; /lost = 0; /scheme = "heun"; #/mean = 9
+rare --model sdcom --set heavy --feedback gains.json --t-end 0.3 --dt 0.01 --passes chi_2=0.05 --effort 20 --repetitions 10
+    /state = "chi_2"; /repetitions = 10; /complete = true
+covariance --model sdcom --t-end 0.2 --dt 0.01 --members 32
+    /members = 32; #/times/0/linear_std = 7
+disperse --model sdcom --members 30
+    /members = 30; /complete = true
+simulate --model dcom --set heavy --stochastic --t-end 0.2 --dt 0.01 --out flight.csv
+    /steps = 20; #/final_state = 9
+"##;
 
 /// One model of a family, with a mode more than the table of the built-in family has.
-pub(super) const FOUR_MODE: &[Question] = &[(
-    "trim --model dcom",
-    &["/converged = true", "#/eta = 4", "/in_validity_box = true"],
-)];
+pub(super) const FOUR_MODE: &str = r##"
+trim --model dcom
+    /converged = true; #/eta = 4; /in_validity_box = true
+"##;
 
 /// Equations of a built-in family in a family of its own.
-pub(super) const PARKER_CANARD: &[Question] = &[
-    (
-        "trim --input delta_c=2deg",
-        &["/converged = true", "/in_validity_box = true"],
-    ),
-    ("poles --inputs phi,delta_e,delta_c", &["#/inputs = 3"]),
-];
+pub(super) const PARKER_CANARD: &str = r##"
+trim --input delta_c=2deg
+    /converged = true; /in_validity_box = true
+poles --inputs phi,delta_e,delta_c
+    #/inputs = 3
+"##;
 
 /// One model of a family, without flexible modes and without noise.
-pub(super) const COM_RIGID_ALONE: &[Question] = &[
-    (
-        "trim --model com_rigid",
-        &["/converged = true", "#/state = 5"],
-    ),
-    ("poles --model com_rigid", &["#/poles = 5"]),
-];
+pub(super) const COM_RIGID_ALONE: &str = r##"
+trim --model com_rigid
+    /converged = true; #/state = 5
+poles --model com_rigid
+    #/poles = 5
+"##;
 
 /// Nothing of it flies, and nothing drives it but its input. At 10 degrees the weight of 2 slug at 3 ft needs 33.52 lb ft.
-pub(super) const PENDULUM: &[Question] = &[
-    (
-        "trim --model pendulum --angle 10",
-        &[
-            "/converged = true",
-            "/input/torque = 33.521790903988204",
-            "#/outputs = 1",
-        ],
-    ),
-    (
-        "linearize --model pendulum --outputs height,angle",
-        &["#/C = 2"],
-    ),
-    (
-        "poles --model pendulum",
-        &["/modes/0/name = \"swing\"", "#/poles = 2", "#/zeros = 0"],
-    ),
-    (
-        "lqr --model pendulum --set light --out pendulum.json",
-        &["#/gain = 1"],
-    ),
-    (
-        "montecarlo --model pendulum --set light --feedback pendulum.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std \
-         angle=1deg",
-        &["/members = 16", "/lost = 0", "/feedback = true"],
-    ),
-    (
-        "covariance --model pendulum --state-std angle=1deg --t-end 1 --dt 0.05 --members 30",
-        &["#/times/0/linear_std = 2"],
-    ),
-    ("disperse --model pendulum --members 30", &["/trimmed = 30"]),
-    (
-        "simulate --model pendulum --initial angle=5deg --t-end 1 --dt 0.01 --out swing.csv",
-        &["/steps = 100"],
-    ),
-];
+pub(super) const PENDULUM: &str = r##"
+trim --model pendulum --angle 10
+    /converged = true; /input/torque = 33.521790903988204; #/outputs = 1
+linearize --model pendulum --outputs height,angle
+    #/C = 2
+poles --model pendulum
+    /modes/0/name = "swing"; #/poles = 2; #/zeros = 0
+lqr --model pendulum --set light --out pendulum.json
+    #/gain = 1
+montecarlo --model pendulum --set light --feedback pendulum.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std angle=1deg
+    /members = 16; /lost = 0; /feedback = true
+covariance --model pendulum --state-std angle=1deg --t-end 1 --dt 0.05 --members 30
+    #/times/0/linear_std = 2
+disperse --model pendulum --members 30
+    /trimmed = 30
+simulate --model pendulum --initial angle=5deg --t-end 1 --dt 0.01 --out swing.csv
+    /steps = 100
+"##;
 
 /// One state, one input, one output, no curve fit, no noise. 1 m/s flows in, 0.5 /s of the level flows out.
-pub(super) const TANK: &[Question] = &[
-    (
-        "trim --model tank",
-        &["/converged = true", "/state/level = 2.0"],
-    ),
-    ("poles --model tank", &["#/poles = 1", "#/zeros = 0"]),
-    (
-        "linearize --model tank",
-        &["/A = [[-0.5]]", "/B = [[1.0]]", "/C = [[1.0]]"],
-    ),
-    (
-        "lqr --model tank --state-deviation level=0.1 --input-deviation valve=0.1",
-        &["#/gain = 1", "#/gain/0 = 1"],
-    ),
-    (
-        "montecarlo --model tank --members 16 --t-end 1 --dt 0.01 --disperse",
-        &["/members = 16", "/lost = 0", "#/mean = 1"],
-    ),
-    ("disperse --model tank --members 30", &["/trimmed = 30"]),
-    (
-        "simulate --model tank --t-end 1 --dt 0.01 --out level.csv",
-        &["/steps = 100", "#/final_state = 1"],
-    ),
-];
+pub(super) const TANK: &str = r##"
+trim --model tank
+    /converged = true; /state/level = 2.0
+poles --model tank
+    #/poles = 1; #/zeros = 0
+linearize --model tank
+    /A = [[-0.5]]; /B = [[1.0]]; /C = [[1.0]]
+lqr --model tank --state-deviation level=0.1 --input-deviation valve=0.1
+    #/gain = 1; #/gain/0 = 1
+montecarlo --model tank --members 16 --t-end 1 --dt 0.01 --disperse
+    /members = 16; /lost = 0; #/mean = 1
+disperse --model tank --members 30
+    /trimmed = 30
+simulate --model tank --t-end 1 --dt 0.01 --out level.csv
+    /steps = 100; #/final_state = 1
+"##;
 
 /// Six degrees of freedom, in level flight and in a turn.
-pub(super) const SIX_DOF: &[Question] = &[
-    (
-        "trim --bank 30",
-        &[
-            "/converged = true",
-            "#/state = 13",
-            "/in_validity_box = true",
-        ],
-    ),
-    ("poles", &["#/poles = 13", "/modes/0/name = \"heading\""]),
-    (
-        "lqr --bank 30 --out turn.json",
-        &["#/gain = 4", "#/gain/0 = 13"],
-    ),
-    (
-        "montecarlo --bank 30 --feedback turn.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std beta=1deg",
-        &["/members = 16", "/lost = 0", "/feedback = true"],
-    ),
-    ("disperse --members 30", &["/trimmed = 29"]),
-    (
-        "covariance --state-std alpha=0.1deg --t-end 1 --dt 0.05 --members 30",
-        &["#/times/0/linear_std = 13"],
-    ),
-];
+pub(super) const SIX_DOF: &str = r##"
+trim --bank 30
+    /converged = true; #/state = 13; /in_validity_box = true
+poles
+    #/poles = 13; /modes/0/name = "heading"
+lqr --bank 30 --out turn.json
+    #/gain = 4; #/gain/0 = 13
+montecarlo --bank 30 --feedback turn.json --members 16 --t-end 1 --dt 0.01 --disperse --state-std beta=1deg
+    /members = 16; /lost = 0; /feedback = true
+disperse --members 30
+    /trimmed = 29
+covariance --state-std alpha=0.1deg --t-end 1 --dt 0.05 --members 30
+    #/times/0/linear_std = 13
+"##;
 
 /// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
-pub(super) const WINGED_CONE: &[Question] = &[
-    (
-        "trim --model winged_cone --velocity 15060 --altitude 110000",
-        &[
-            "/converged = true",
-            "/state/alpha ~ 0.031227",
-            "/input/beta_command ~ 0.17619",
-            "/input/delta_e ~ -0.0069454",
-        ],
-    ),
-    ("poles", &["#/poles = 7"]),
-];
+pub(super) const WINGED_CONE: &str = r##"
+trim --model winged_cone --velocity 15060 --altitude 110000
+    /converged = true; /state/alpha ~ 0.031227; /input/beta_command ~ 0.17619; /input/delta_e ~ -0.0069454
+poles
+    #/poles = 7
+"##;
 
 /// As computed. Published, coarsely rounded: alpha 0.0315 rad, throttle 0.183, elevator -0.0066 rad.
-pub(super) const WANG_STENGEL: &[Question] = &[
-    (
-        "trim --model wang_stengel --velocity 15060 --altitude 110000",
-        &[
-            "/converged = true",
-            "/state/alpha ~ 0.031225",
-            "/input/beta_command ~ 0.17619",
-            "/input/delta_e ~ -0.0069465",
-        ],
-    ),
-    (
-        "montecarlo --members 1000 --t-end 1 --dt 0.01 --disperse",
-        &["/members = 1000", "/lost = 0", "#/mean = 7"],
-    ),
-];
+pub(super) const WANG_STENGEL: &str = r##"
+trim --model wang_stengel --velocity 15060 --altitude 110000
+    /converged = true; /state/alpha ~ 0.031225; /input/beta_command ~ 0.17619; /input/delta_e ~ -0.0069465
+montecarlo --members 1000 --t-end 1 --dt 0.01 --disperse
+    /members = 1000; /lost = 0; #/mean = 7
+"##;
 
 /// Gusts join the examples: at rest they change no trim, and they drive every member of its own.
-pub(super) const GUSTY: &[Question] = &[
-    (
-        "trim --model gusty_cone --velocity 15060 --altitude 110000",
-        &[
-            "/converged = true",
-            "/state/alpha ~ 0.031227",
-            "/state/gust_first = 0.0",
-            "/input/delta_e ~ -0.0069454",
-        ],
-    ),
-    (
-        "poles --model gusty_cone",
-        &["#/poles = 9", "/modes/5/name = \"gust\""],
-    ),
-    (
-        "montecarlo --model gusty_cone --members 1000 --t-end 1 --dt 0.01",
-        &["/members = 1000", "/lost = 0", "#/mean = 9"],
-    ),
-    (
-        "trim --model gusty_wang_stengel --velocity 15060 --altitude 110000",
-        &["/converged = true", "/state/alpha ~ 0.031225"],
-    ),
-    (
-        "montecarlo --model gusty_wang_stengel --members 1000 --t-end 1 --dt 0.01",
-        &["/members = 1000", "/lost = 0", "#/mean = 8"],
-    ),
-    (
-        "montecarlo --model winged_cone --members 16 --t-end 1 --dt 0.01 --disperse",
-        &["/members = 16", "/lost = 0", "#/mean = 7"],
-    ),
-];
+pub(super) const GUSTY: &str = r##"
+trim --model gusty_cone --velocity 15060 --altitude 110000
+    /converged = true; /state/alpha ~ 0.031227; /state/gust_first = 0.0; /input/delta_e ~ -0.0069454
+poles --model gusty_cone
+    #/poles = 9; /modes/5/name = "gust"
+montecarlo --model gusty_cone --members 1000 --t-end 1 --dt 0.01
+    /members = 1000; /lost = 0; #/mean = 9
+trim --model gusty_wang_stengel --velocity 15060 --altitude 110000
+    /converged = true; /state/alpha ~ 0.031225
+montecarlo --model gusty_wang_stengel --members 1000 --t-end 1 --dt 0.01
+    /members = 1000; /lost = 0; #/mean = 8
+montecarlo --model winged_cone --members 16 --t-end 1 --dt 0.01 --disperse
+    /members = 16; /lost = 0; #/mean = 7
+"##;
 
 /// A program over models of its own, in a folder for what it writes.
 pub(super) struct Own {
@@ -307,14 +180,18 @@ impl Own {
         }
     }
 
-    /// Asks, and holds the answers to what must be.
-    pub(super) fn answers(&self, questions: &[Question]) -> Result<(), String> {
-        for (line, facts) in questions {
-            println!("  {line}");
-            let json = self.json(line)?;
-            for fact in *facts {
+    /// Asks, and holds the answers to the facts below each question.
+    pub(super) fn answers(&self, questions: &str) -> Result<(), String> {
+        let (mut asked, mut json) = ("", Value::Null);
+        for line in questions.trim().lines() {
+            let Some(facts) = line.strip_prefix("    ") else {
+                println!("  {line}");
+                (asked, json) = (line, self.json(line)?);
+                continue;
+            };
+            for fact in facts.split("; ") {
                 holds(&json, fact)
-                    .map_err(|found| format!("error: {line}: not {fact}, but {found}"))?;
+                    .map_err(|found| format!("error: {asked}: not {fact}, but {found}"))?;
             }
         }
         Ok(())

@@ -6,7 +6,7 @@ use nalgebra::{Complex, DMatrix};
 use super::draws::Draws;
 use super::quantity::{Kind, Quantity};
 use super::{Nominal, SolutionError};
-use crate::dual::Dual;
+use crate::dual::output_parameter_slopes;
 use crate::linearize::{LinearSystem, linearize};
 use crate::sensitivity::RootVectors;
 use crate::statistics::deviation_of;
@@ -101,7 +101,12 @@ pub fn slopes<M: GeneratedModel>(
     };
     let model_changes = parameters.iter().map(|&parameter| ModelChange {
         drift: by(parameter),
-        outputs: output_change::<M>(&parameters_there, parameter, &trim),
+        outputs: output_parameter_slopes::<M>(
+            &parameters_there,
+            parameter,
+            &trim.state,
+            &trim.input,
+        ),
     });
     let model_changes: Vec<_> = model_changes.collect();
     let Some(moves) = response(&model, &nominal.flight, &trim, &model_changes)? else {
@@ -141,21 +146,6 @@ pub fn slopes<M: GeneratedModel>(
         by_quantity: nominal.quantities.iter().map(slopes).collect(),
         parameters,
     })
-}
-
-/// The derivative of the outputs by the parameter number `parameter`, state and input held.
-fn output_change<M: GeneratedModel>(
-    parameters: &M::ParametersOf<f64>,
-    parameter: usize,
-    trim: &Trim<M::State, M::Input>,
-) -> M::OutputsOf<f64> {
-    let mut moved = M::map_parameters(parameters, |&it| Dual::constant(it));
-    let seeded = moved.get(parameter).map(|it| Dual { slope: 1.0, ..it });
-    seeded.and_then(|it| moved.set(parameter, it));
-    let x = M::map_state(&trim.state, |&it| Dual::constant(it));
-    let u = M::map_input(&trim.input, |&it| Dual::constant(it));
-    let outputs = M::outputs(&M::generic(&moved), &x, &u);
-    Vector::from_fn(|index| outputs.get(index).map_or(0.0, |it: Dual| it.slope))
 }
 
 /// The nominal trim.

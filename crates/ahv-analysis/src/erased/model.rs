@@ -10,6 +10,7 @@ use super::steppers::{self, Advance, DeterministicScheme, StepperError};
 use super::{AnyModel, Components, ParameterValues, values, vector};
 use crate::covariance::{CovarianceError, Flight, Spreading};
 use crate::disperse::{self, Draws, Member, Nominal, Slopes, SolutionError};
+use crate::dual::output_parameter_slopes;
 use crate::linearize::{LinearSystem, LinearizeError, with_outputs};
 use crate::monte_carlo::{Engine, Experiment, Feedback, MonteCarloError, Scheme, Unsteady};
 use crate::ordered::Control;
@@ -121,6 +122,12 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         model::<M>(p) == model::<M>(q)
     }
 
+    fn fault(&self, p: &[f64], x: &[f64], u: &[f64]) -> Option<String> {
+        let (model, x, u) = (model::<M>(p), vector(x), vector(u));
+        let fault = model.fault(&x, &u);
+        fault.map(|it| it.to_string())
+    }
+
     fn drift(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
         values(&model::<M>(p).drift(&vector(x), &vector(u)))
     }
@@ -157,6 +164,15 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
     fn output_values(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
         let model = M::generic(&vector::<M::ParametersOf<f64>>(p));
         values(&M::outputs(&model, &vector(x), &vector(u)))
+    }
+
+    fn output_parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64]) -> DMatrix<f64> {
+        let (parameters, x, u) = (vector(p), vector(x), vector(u));
+        let columns = (0..p.len()).map(|parameter| {
+            let slopes = output_parameter_slopes::<M>(&parameters, parameter, &x, &u);
+            DVector::from_vec(values(&slopes))
+        });
+        DMatrix::from_columns(&columns.collect::<Vec<_>>())
     }
 
     fn trim(&self, p: &[f64], steady: &SteadyState) -> Result<Trim<Vec<f64>, Vec<f64>>, TrimError> {

@@ -1,19 +1,14 @@
 //! Invariant zeros, by a staircase reduction of the system pencil.
 
-use faer::Mat;
-use faer::linalg::solvers::GeneralizedEigen;
 use nalgebra::{Complex, DMatrix};
 
 use super::balance::{balance, similar};
 use super::staircase::{Quadruple, reduce};
-use super::{PolesError, frequency, told_from_zero};
+use super::{PolesError, eigen, frequency, told_from_zero};
 use crate::linearize::LinearSystem;
 
 /// An entry up to this many roundings of the whole pencil counts as 0 in a rank.
 const ROUNDINGS: f64 = 100.0;
-
-/// Rows below which faer's QZ algorithm has no workspace.
-const FEWEST_ROWS: usize = 3;
 
 /// Singular value, as a share of the largest, below which a rank is lost.
 const RANK: f64 = 1e-9;
@@ -163,21 +158,11 @@ fn finite(system: &Quadruple) -> Result<Vec<Complex<f64>>, PolesError> {
     outputs.qr().q_tr_mul(&mut kernel);
     let kernel = kernel.rows_range(rank..).transpose();
     let carried = pencil.rows_range(..n) * &kernel;
-    if n < FEWEST_ROWS {
-        let square = kernel.rows(0, n).into_owned();
-        let matrix = square.lu().solve(&carried);
-        let roots = matrix.map(|matrix| matrix.complex_eigenvalues().as_slice().to_vec());
-        return roots.ok_or(PolesError::NoConvergence);
-    }
-    let left = Mat::from_fn(n, n, |row, column| carried[(row, column)]);
-    let right = Mat::from_fn(n, n, |row, column| kernel[(row, column)]);
-    let solved = GeneralizedEigen::new_from_real(left.as_ref(), right.as_ref())
-        .map_err(|_| PolesError::NoConvergence)?;
-    let (alphas, betas) = (solved.S_a().column_vector(), solved.S_b().column_vector());
-    let roots = (0..n).map(|index| alphas[index] / betas[index]);
-    let roots: Vec<Complex<f64>> = roots.collect();
-    let sound = roots.iter().all(|root| frequency(*root).is_finite());
-    sound.then_some(roots).ok_or(PolesError::NoConvergence)
+    let square = kernel.rows(0, n).into_owned();
+    let matrix = square.lu().solve(&carried);
+    matrix
+        .and_then(|matrix| eigen::values(&matrix))
+        .ok_or(PolesError::NoConvergence)
 }
 
 /// Whether [A − s I, B] or [A − s I; C] loses rank at the zero s.

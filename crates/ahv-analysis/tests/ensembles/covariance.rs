@@ -2,19 +2,15 @@
 
 use std::marker::PhantomData;
 
+use super::small::{Driven, Eighteen, Fifteen, One, Pair, Square, Two};
 use crate::common::level;
-use ahv_analysis::covariance::{
-    CovarianceError, Flight, Regulation, Spreading, lyapunov, noise_intensity,
-};
+use ahv_analysis::covariance::{CovarianceError, Flight, Regulation, lyapunov, noise_intensity};
 use ahv_analysis::erased::{values, vector};
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::lqr::{Regulator, bryson, deviations};
-use ahv_analysis::monte_carlo::{Experiment, Mode, Scheme, Snapshot};
-use ahv_analysis::ordered::Control;
-use ahv_analysis::statistics::Estimate;
 use ahv_analysis::trim::trim;
-use ahv_core::{DifferentiableModel, GeneratedModel, Model, Pattern, StochasticModel, Vector};
-use ahv_models::{dcom, sdcom, sdcom_gust, sdcom_printed};
+use ahv_core::{DifferentiableModel, GeneratedModel, Vector};
+use ahv_models::sdcom;
 use approx::assert_relative_eq;
 use nalgebra::DMatrix;
 
@@ -91,56 +87,6 @@ fn what_has_no_stationary_covariance_is_refused() {
     assert!(matches!(nan, Err(CovarianceError::NonFinite { name: "A" })));
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct One<T> {
-    x: T,
-}
-
-ahv_core::impl_vector! { One { x: ["1", "1", 1.0] } }
-
-/// dx = −x² dt + σ dW.
-struct Square(f64);
-
-impl Model for Square {
-    type Scalar = f64;
-    type State = One<f64>;
-    type Input = One<f64>;
-
-    fn drift(&self, x: &One<f64>, _: &One<f64>) -> One<f64> {
-        One { x: -x.x * x.x }
-    }
-}
-
-impl DifferentiableModel for Square {
-    type StateJacobian = One<One<f64>>;
-    type InputJacobian = One<One<f64>>;
-    const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new([1, 1], &[[0, 0]]);
-
-    fn jacobians(&self, x: &One<f64>, _: &One<f64>) -> (One<One<f64>>, One<One<f64>>) {
-        let by_state = One {
-            x: One { x: -2.0 * x.x },
-        };
-        (by_state, One { x: One { x: 0.0 } })
-    }
-
-    fn drift_and_jacobians(
-        &self,
-        x: &One<f64>,
-        u: &One<f64>,
-    ) -> (One<f64>, One<One<f64>>, One<One<f64>>) {
-        let (by_state, by_input) = self.jacobians(x, u);
-        (self.drift(x, u), by_state, by_input)
-    }
-}
-
-impl StochasticModel for Square {
-    type Noise = One<f64>;
-
-    fn noise_increment(&self, _: &One<f64>, _: &One<f64>, dw: &One<f64>) -> One<f64> {
-        One { x: self.0 * dw.x }
-    }
-}
-
 /// x = 1/(1 + t), so that Ṗ = −4 P/(1 + t) + σ² and P = σ² ((1 + t)⁵ − 1)/(5 (1 + t)⁴).
 #[test]
 fn the_covariance_follows_a_curved_flight_with_order_2() {
@@ -204,73 +150,6 @@ fn times_and_steps_without_sense_are_refused() {
         matches!(failure, Err(CovarianceError::Indefinite { least }) if (least + 1.0).abs() < 1e-12),
         "{failure:?}"
     );
-}
-
-/// A linear model of two states and one input: dx₁ = (−a x₁ + c u) dt + g dW, dx₂ = x₁ dt.
-struct Pair {
-    a: f64,
-    c: f64,
-    g: f64,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Two<T> {
-    x: T,
-    y: T,
-}
-
-ahv_core::impl_vector! { Two { x: ["1", "1", 1.0], y: ["1", "1", 1.0] } }
-
-impl Model for Pair {
-    type Scalar = f64;
-    type State = Two<f64>;
-    type Input = One<f64>;
-
-    fn drift(&self, x: &Two<f64>, u: &One<f64>) -> Two<f64> {
-        Two {
-            x: self.c * u.x - self.a * x.x,
-            y: x.x,
-        }
-    }
-}
-
-impl DifferentiableModel for Pair {
-    type StateJacobian = Two<Two<f64>>;
-    type InputJacobian = Two<One<f64>>;
-    const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new([2, 2], &[[0, 0], [1, 0]]);
-
-    fn jacobians(&self, _: &Two<f64>, _: &One<f64>) -> (Two<Two<f64>>, Two<One<f64>>) {
-        (
-            Two {
-                x: Two { x: -self.a, y: 0.0 },
-                y: Two { x: 1.0, y: 0.0 },
-            },
-            Two {
-                x: One { x: self.c },
-                y: One { x: 0.0 },
-            },
-        )
-    }
-
-    fn drift_and_jacobians(
-        &self,
-        x: &Two<f64>,
-        u: &One<f64>,
-    ) -> (Two<f64>, Two<Two<f64>>, Two<One<f64>>) {
-        let (by_state, by_input) = self.jacobians(x, u);
-        (self.drift(x, u), by_state, by_input)
-    }
-}
-
-impl StochasticModel for Pair {
-    type Noise = One<f64>;
-
-    fn noise_increment(&self, _: &Two<f64>, _: &One<f64>, dw: &One<f64>) -> Two<f64> {
-        Two {
-            x: self.g * dw.x,
-            y: 0.0,
-        }
-    }
 }
 
 /// Var x = g²(1 − e^(−2at))/(2a) and Var y = g²/a² (t − 2(1 − e^(−at))/a + (1 − e^(−2at))/(2a)): a step as long as one likes.
@@ -365,101 +244,6 @@ fn units_of_an_initial_covariance_do_not_matter() {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Fifteen<T> {
-    a: T,
-    b: T,
-    c: T,
-    d: T,
-    e: T,
-    f: T,
-    g: T,
-    h: T,
-    i: T,
-    j: T,
-    k: T,
-    l: T,
-    m: T,
-    n: T,
-    o: T,
-}
-
-ahv_core::impl_vector! { Fifteen {
-    a: ["1", "1", 1.0], b: ["1", "1", 1.0], c: ["1", "1", 1.0], d: ["1", "1", 1.0], e: ["1", "1", 1.0],
-    f: ["1", "1", 1.0], g: ["1", "1", 1.0], h: ["1", "1", 1.0], i: ["1", "1", 1.0], j: ["1", "1", 1.0],
-    k: ["1", "1", 1.0], l: ["1", "1", 1.0], m: ["1", "1", 1.0], n: ["1", "1", 1.0], o: ["1", "1", 1.0],
-} }
-
-/// dxᵢ = uⱼ dt, where every state has the first of the inputs.
-struct Driven<U>(PhantomData<U>);
-
-impl<U: Vector<f64>> Model for Driven<U> {
-    type Scalar = f64;
-    type State = Fifteen<f64>;
-    type Input = U;
-
-    fn drift(&self, _: &Fifteen<f64>, u: &U) -> Fifteen<f64> {
-        Fifteen::splat(u.get(0).unwrap_or_default())
-    }
-}
-
-impl<U: Vector<f64>> DifferentiableModel for Driven<U> {
-    type StateJacobian = Fifteen<Fifteen<f64>>;
-    type InputJacobian = Fifteen<U>;
-    const STATE_JACOBIAN_PATTERN: Pattern<2> = Pattern::new([15, 15], &[]);
-
-    fn jacobians(&self, _: &Fifteen<f64>, _: &U) -> (Fifteen<Fifteen<f64>>, Fifteen<U>) {
-        let row = U::from_fn(|index| f64::from(u8::from(index == 0)));
-        (Fifteen::splat(Fifteen::splat(0.0)), Fifteen::splat(row))
-    }
-
-    fn drift_and_jacobians(
-        &self,
-        x: &Fifteen<f64>,
-        u: &U,
-    ) -> (Fifteen<f64>, Fifteen<Fifteen<f64>>, Fifteen<U>) {
-        let (by_state, by_input) = self.jacobians(x, u);
-        (self.drift(x, u), by_state, by_input)
-    }
-}
-
-impl<U: Vector<f64>> StochasticModel for Driven<U> {
-    type Noise = One<f64>;
-
-    fn noise_increment(&self, _: &Fifteen<f64>, _: &U, _: &One<f64>) -> Fifteen<f64> {
-        Fifteen::splat(0.0)
-    }
-}
-
-ahv_core::impl_vector! { Eighteen {
-    a: ["1", "1", 1.0], b: ["1", "1", 1.0], c: ["1", "1", 1.0], d: ["1", "1", 1.0], e: ["1", "1", 1.0],
-    f: ["1", "1", 1.0], g: ["1", "1", 1.0], h: ["1", "1", 1.0], i: ["1", "1", 1.0], j: ["1", "1", 1.0],
-    k: ["1", "1", 1.0], l: ["1", "1", 1.0], m: ["1", "1", 1.0], n: ["1", "1", 1.0], o: ["1", "1", 1.0],
-    p: ["1", "1", 1.0], q: ["1", "1", 1.0], r: ["1", "1", 1.0],
-} }
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Eighteen<T> {
-    a: T,
-    b: T,
-    c: T,
-    d: T,
-    e: T,
-    f: T,
-    g: T,
-    h: T,
-    i: T,
-    j: T,
-    k: T,
-    l: T,
-    m: T,
-    n: T,
-    o: T,
-    p: T,
-    q: T,
-    r: T,
-}
-
 /// An input known to σ moves each state by σ t: sixteen, seventeen and thirty states and inputs have it, and 33 are refused.
 #[test]
 fn as_many_states_and_inputs_as_transitions_are_made_for() {
@@ -529,7 +313,7 @@ fn a_closed_loop_comes_to_rest_where_lyapunov_says() {
 }
 
 /// A flight of a model at its trim, with held inputs.
-fn held<M: GeneratedModel>(model: &M, dt: f64) -> Flight {
+pub(super) fn held<M: GeneratedModel>(model: &M, dt: f64) -> Flight {
     let trim = trim(model, &level::<M>()).expect("it trims");
     Flight::new(values(&trim.state), values(&trim.input), dt)
 }
@@ -577,113 +361,6 @@ fn the_covariance_at_a_trim_is_that_of_one_matrix_exponential() {
     }
     for (index, std) in spread[0].std().into_iter().enumerate() {
         assert_relative_eq!(std, expected[(index, index)].sqrt(), max_relative = 1e-7);
-    }
-}
-
-/// The ensemble of the same flight, by the default scheme of its model.
-fn sample<M: GeneratedModel>(
-    flight: &Flight,
-    parameters: &M::ParametersOf<f64>,
-    scheme: Scheme,
-    snapshots: Vec<u64>,
-    members: u64,
-) -> Vec<Snapshot> {
-    let still = |it: &[f64]| vec![0.0; it.len()];
-    let experiment = Experiment {
-        parameters: values(parameters),
-        dispersion: None,
-        state: [flight.start.clone(), still(&flight.start)],
-        input: [flight.input.clone(), still(&flight.input)],
-        feedback: None,
-        watched: Vec::new(),
-        scheme,
-        mode: Mode::Exact,
-        dt: flight.dt,
-        snapshots,
-        seed: 3,
-    };
-    let engine = experiment.engine::<M>().expect("the scheme goes");
-    let outcome = engine.run(members, 2, &Control::default());
-    outcome.expect("flights").snapshots
-}
-
-/// Every standard deviation in its interval of 95 % would be luck: 2.3 half widths hold each with near certainty.
-fn agrees(linear: &Spreading, sampled: &Snapshot) {
-    for (index, (linear, state)) in linear.std().into_iter().zip(&sampled.states).enumerate() {
-        let Estimate { value, low, high } =
-            state.std.and_then(|it| it.closed()).expect("a deviation");
-        let half = 0.5 * (high - low);
-        assert!(
-            (linear - value).abs() <= 2.3 * half + 1e-12 * linear,
-            "{index}: {linear} {value} {low} {high}"
-        );
-    }
-}
-
-/// Flights of 0.1 s and 0.3 s, by both; what is sampled.
-fn compare<M: GeneratedModel>(
-    parameters: &M::ParametersOf<f64>,
-    scheme: Scheme,
-    dt: f64,
-) -> Vec<Snapshot> {
-    let model = M::with_parameters(parameters);
-    let flight = held(&model, dt);
-    let steps = [0.1, 0.3].map(|time: f64| (time / dt).round() as u64);
-    let linear = flight.covariance(&model, &[0.1, 0.3]).expect("a flight");
-    let sampled = sample::<M>(&flight, parameters, scheme, steps.to_vec(), 400);
-    for (linear, sampled) in linear.iter().zip(&sampled) {
-        assert_eq!(sampled.members, 400);
-        agrees(linear, sampled);
-    }
-    sampled
-}
-
-#[test]
-fn flights_of_every_model_spread_as_the_linear_covariance_says() {
-    let dt = 5e-3;
-    let exact = compare::<sdcom::Model<f64>>(&sdcom::NOMINAL, Scheme::Splitting, dt);
-    compare::<sdcom_gust::Model<f64>>(&sdcom_gust::NOMINAL, Scheme::Splitting, dt);
-    compare::<sdcom_printed::Model<f64>>(&sdcom_printed::NOMINAL, Scheme::Splitting, dt);
-    // The modes of DCOM want shorter steps.
-    compare::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Heun, 2e-3);
-    // A wrong linearisation is seen: the noise of modes as large again.
-    let loud = sdcom::Model::new(&sdcom::Parameters {
-        sigma_1: 2.0 * sdcom::NOMINAL.sigma_1,
-        ..sdcom::NOMINAL
-    });
-    let other = held(&loud, dt).covariance(&loud, &[0.3]).expect("a flight");
-    let std = exact[1].states[5].std.expect("a deviation");
-    assert!(!std.holds(other[0].std()[5]));
-}
-
-/// The fast decay of a reduction that keeps the moments, a = 2625 1/s, at steps of 5 and 1.3 times its time constant: the linear
-/// covariance and the ensemble have the exact deviation of the coloured noise.
-#[test]
-fn stiff_coloured_noise_has_its_exact_deviation_at_any_step() {
-    let parameters = sdcom::SECTION5_3.with_reduction(sdcom::Reduction::Moment);
-    let model = sdcom::Model::new(&parameters);
-    let chi = 7;
-    let exact = {
-        let flight = held(&model, 1.0);
-        let (x, u) = (vector(&flight.start), vector(&flight.input));
-        let (a, _) = model.jacobians(&x, &u);
-        let rate = -a.chi_3.chi_3;
-        assert!((2600.0..2650.0).contains(&rate), "{rate}");
-        let noise = noise_intensity(&model, &x, &u);
-        (noise[(chi, chi)] / (2.0 * rate)).sqrt()
-    };
-    assert!((exact - 0.0329).abs() < 5e-5, "{exact}");
-    for (dt, steps) in [(2e-3, 50), (5e-4, 200)] {
-        let flight = held(&model, dt);
-        let linear = flight.covariance(&model, &[0.1]).expect("a flight");
-        assert_relative_eq!(linear[0].std()[chi], exact, max_relative = 1e-9);
-        let least = linear[0].covariance.clone().symmetric_eigenvalues().min();
-        assert!(least >= -1e-12 * linear[0].covariance.amax(), "{least}");
-        let sampled =
-            sample::<sdcom::Model<f64>>(&flight, &parameters, Scheme::Splitting, vec![steps], 2000);
-        let std = sampled[0].states[chi].std.and_then(|it| it.closed());
-        let std = std.expect("a deviation");
-        assert!((std.value / exact - 1.0).abs() < 0.06, "{std:?}, {exact}");
     }
 }
 

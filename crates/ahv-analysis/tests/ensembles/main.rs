@@ -3,9 +3,13 @@
 //! One program, because the engine takes long to compile for a model.
 #![forbid(unsafe_code)]
 
+mod chain;
 #[path = "../common/mod.rs"]
 mod common;
 mod covariance;
 mod coverage;
+mod feedback;
 mod monte_carlo;
 mod rare;
+mod small;
+mod spread;

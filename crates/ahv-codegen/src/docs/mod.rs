@@ -1,4 +1,4 @@
-//! The documentation of the generated package: Markdown with formulas, and pictures, from IR and table values.
+//! The documentation of the generated package: Markdown with formulas, from IR and table values.
 
 mod audit;
 mod equations;
@@ -9,7 +9,7 @@ mod lines;
 mod model_page;
 mod noise;
 mod passes_page;
-mod sparsity;
+mod structure;
 mod subject;
 mod symbol;
 mod table_page;
@@ -50,7 +50,7 @@ pub(crate) fn emit_table(subject: &Subject<'_>) -> Result<Tree, EmitError> {
     Ok(Tree::from([(path, tidy(&page))]))
 }
 
-/// The page and the picture of a model, by their path in the generated package.
+/// The page of a model, by its path in the generated package.
 ///
 /// # Errors
 /// [`EmitError::Mismatch`] where the IR names what it does not have.
@@ -60,11 +60,10 @@ pub(crate) fn emit_model(
     costs: &Costs,
 ) -> Result<Tree, EmitError> {
     let page = model_page::page(subject, model, costs)?;
-    let picture = sparsity::picture(model, subject.document);
-    Ok(Tree::from([
-        (format!("docs/{}.md", model.name), tidy(&page)),
-        (format!("docs/images/{}-structure.svg", model.name), picture),
-    ]))
+    Ok(Tree::from([(
+        format!("docs/{}.md", model.name),
+        tidy(&page),
+    )]))
 }
 
 /// The page of the passes, by its path in the generated package.

@@ -6,6 +6,7 @@ use super::equations::{self, Section, SymbolRow};
 use super::functions::{self, Costs, FunctionRow};
 use super::latex::Printer;
 use super::noise::{self, Noise};
+use super::structure::{self, Pattern};
 use super::subject::{Subject, cell, inline_math, plain_number, readable, unit_text, verbatim};
 use crate::EmitError;
 use crate::ir::{self, Function, Model};
@@ -25,6 +26,7 @@ struct ModelPage<'a> {
     model: &'a Model,
     bases: Vec<Basis>,
     drift: Vec<Vec<String>>,
+    patterns: Vec<Pattern>,
     sections: Vec<Section>,
     feedback: Vec<Captioned>,
     others: Vec<Captioned>,
@@ -62,6 +64,7 @@ pub(super) fn page(
         model,
         bases: bases(subject, model),
         drift: equations::drift(&printer),
+        patterns: structure::patterns(&printer, document),
         sections: equations::sections(subject, &printer, &AS_FORMULAS),
         feedback,
         others,

@@ -1,8 +1,8 @@
-//! Symbols in LaTeX: what they are made of, how tightly they bind, how wide they are, and how a picture writes them.
+//! Symbols in LaTeX: what they are made of, how tightly they bind, and how wide they are.
 
 /// What a token of a symbol is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+enum Kind {
     /// A letter, digit, command with its arguments, or group.
     Base,
     /// `\sin` and the like.
@@ -21,9 +21,9 @@ pub(super) enum Kind {
 
 /// A token and its text; scripts are without their braces.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Token {
-    pub(super) kind: Kind,
-    pub(super) text: String,
+struct Token {
+    kind: Kind,
+    text: String,
 }
 
 /// What a symbol is as a formula.
@@ -72,7 +72,7 @@ const FUNCTIONS: [&str; 5] = ["sin", "cos", "exp", "ln", "tan"];
 const SPACES: [&str; 8] = ["left", "right", ",", ";", "!", ":", " ", "quad"];
 
 /// The tokens of a symbol.
-pub(super) fn tokens(latex: &str) -> Vec<Token> {
+fn tokens(latex: &str) -> Vec<Token> {
     let characters: Vec<char> = latex.chars().collect();
     let mut found: Vec<Token> = Vec::new();
     let mut at = 0;
@@ -281,99 +281,4 @@ fn fraction_width(latex: &str) -> f64 {
     let above = argument(&characters, &mut at);
     let below = argument(&characters, &mut at);
     width(&above).max(width(&below))
-}
-
-/// A run of text of a picture: its characters, and whether they stand below (`-1`), on (`0`) or above (`1`) the line.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Run {
-    pub(super) text: String,
-    pub(super) level: i8,
-}
-
-/// A symbol as a picture writes it.
-pub(super) fn runs(latex: &str) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for token in tokens(latex) {
-        let (level, text) = match token.kind {
-            Kind::Subscript => (-1, plain(&token.text)),
-            Kind::Superscript => (1, plain(&token.text)),
-            _ => (0, letters(&token.text)),
-        };
-        match runs.last_mut() {
-            Some(last) if last.level == level => last.text += &text,
-            _ => runs.push(Run { text, level }),
-        }
-    }
-    runs
-}
-
-/// A symbol in one line of Unicode, scripts included.
-fn plain(latex: &str) -> String {
-    tokens(latex)
-        .iter()
-        .map(|token| letters(&token.text))
-        .collect()
-}
-
-/// The characters that a token stands for.
-fn letters(token: &str) -> String {
-    let Some(rest) = token.strip_prefix('\\') else {
-        let inner = token.strip_prefix('{').and_then(|t| t.strip_suffix('}'));
-        return inner.map_or_else(|| token.replace('-', "−"), plain);
-    };
-    let name: String = rest.chars().take_while(char::is_ascii_alphabetic).collect();
-    let argument = || {
-        let text = rest[name.len()..].trim();
-        plain(
-            text.strip_prefix('{')
-                .and_then(|t| t.strip_suffix('}'))
-                .unwrap_or(text),
-        )
-    };
-    match name.as_str() {
-        "bar" | "overline" => argument() + "\u{304}",
-        "dot" => argument() + "\u{307}",
-        "ddot" => argument() + "\u{308}",
-        "hat" => argument() + "\u{302}",
-        "tilde" => argument() + "\u{303}",
-        name if ACCENTS.contains(&name) => argument(),
-        name => greek(name).map_or_else(|| name.to_owned(), str::to_owned),
-    }
-}
-
-fn greek(name: &str) -> Option<&'static str> {
-    const LETTERS: [(&str, &str); 28] = [
-        ("alpha", "α"),
-        ("beta", "β"),
-        ("gamma", "γ"),
-        ("delta", "δ"),
-        ("epsilon", "ϵ"),
-        ("zeta", "ζ"),
-        ("eta", "η"),
-        ("theta", "θ"),
-        ("kappa", "κ"),
-        ("lambda", "λ"),
-        ("mu", "μ"),
-        ("nu", "ν"),
-        ("xi", "ξ"),
-        ("pi", "π"),
-        ("rho", "ρ"),
-        ("sigma", "σ"),
-        ("tau", "τ"),
-        ("phi", "ϕ"),
-        ("varphi", "φ"),
-        ("chi", "χ"),
-        ("psi", "ψ"),
-        ("omega", "ω"),
-        ("Gamma", "Γ"),
-        ("Delta", "Δ"),
-        ("Phi", "Φ"),
-        ("Psi", "Ψ"),
-        ("Omega", "Ω"),
-        ("partial", "∂"),
-    ];
-    LETTERS
-        .iter()
-        .find(|(known, _)| *known == name)
-        .map(|(_, letter)| *letter)
 }

@@ -157,6 +157,40 @@ impl fmt::Display for EntryKind {
     }
 }
 
+/// A curve-fitted quantity: a section of the table whose keys are monomials, as `ahv_core::Fit`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fit {
+    /// Its section.
+    pub section: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it is.
+    pub doc: String,
+    /// The variables that its monomials may have.
+    pub variables: Vec<FitVariable>,
+    /// Those whose linear coefficient a table must list.
+    pub required: Vec<String>,
+    /// Those in which it is of degree one at most, together.
+    pub affine: Vec<String>,
+    /// The models whose tables have it; empty if all have it.
+    pub models: Vec<String>,
+}
+
+/// A variable of monomials, as `ahv_core::FitVariable`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitVariable {
+    /// Its name.
+    pub name: String,
+    /// Its unit, angles in rad.
+    pub unit: String,
+    /// What it is.
+    pub doc: String,
+    /// The entry of the validity box that bounds it; none bounds a derived variable.
+    pub interval: Option<String>,
+}
+
 /// A polynomial of parameters that must have a sign, as `ahv_core::Rule`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -263,11 +263,9 @@ fn all_of(subject: &Subject<'_>, earlier: &Earlier, now: &Manifest) -> Option<Tr
     }
     let page = format!("docs/{table}-table.md");
     let of_model = |name: &str, path: &str| {
-        let path = path
-            .strip_prefix("src/")
-            .or_else(|| path.strip_prefix("docs/images/"));
+        let path = path.strip_prefix("src/");
         path.and_then(|it| it.strip_prefix(name))
-            .is_some_and(|it| it.starts_with(['/', '-']))
+            .is_some_and(|it| it.starts_with('/'))
     };
     earlier.all(|path| {
         let mut names = models.iter().map(|model| model.name.as_str());

@@ -9,7 +9,7 @@ use crate::ir::{self, Basis};
 pub(super) const LONGEST: usize = 118;
 /// A function that is differentiated by so many things is computed in pieces even if it is short: it would not be for long.
 const MANY: usize = 6;
-/// A part of a stage is as near to this many lines as its length allows.
+/// A part of a stage takes a further section up to this many lines.
 const FULL: usize = 90;
 /// Characters of a line.
 const WIDTH: usize = 75;
@@ -146,31 +146,72 @@ fn characters(expr: &Expr) -> usize {
 
 /// Statements that fill a struct, in parts that are short enough. No part needs a name of another.
 pub(crate) fn sliced(statements: Vec<Statement>) -> Vec<Body> {
-    let total: usize = statements.iter().map(lines).sum();
-    if total <= LONGEST {
-        return vec![body_of(statements)];
-    }
-    let full = total.div_ceil(total.div_ceil(FULL));
-    let (mut parts, mut part, mut length) = (Vec::new(), Vec::new(), 0);
+    let cuts = cuts(&statements);
+    let (mut parts, mut part, mut is_due) = (Vec::new(), Vec::new(), false);
     let mut heading = None;
-    let mut rest = statements.into_iter().peekable();
-    while let Some(statement) = rest.next() {
-        length += lines(&statement);
-        if let Statement::Section(_) = statement {
-            heading = Some(statement.clone());
-        }
-        part.push(statement);
-        if length >= full && rest.peek().is_some() && is_free(&part, rest.clone()) {
+    for (position, statement) in statements.iter().enumerate() {
+        is_due |= cuts.contains(&position);
+        if is_due && is_free(&part, &statements[position..]) {
             parts.push(body_of(std::mem::take(&mut part)));
-            length = 0;
+            is_due = false;
             // A part that begins in the middle of a section says which.
-            if !matches!(rest.peek(), Some(Statement::Section(_))) {
+            if !is_heading(statement) {
                 part.extend(heading.clone());
             }
         }
+        if is_heading(statement) {
+            heading = Some(statement.clone());
+        }
+        part.push(statement.clone());
     }
     parts.push(body_of(part));
     parts
+}
+
+/// Where statements that fill a struct are cut: between sections, where these are not too long by themselves.
+fn cuts(statements: &[Statement]) -> Vec<usize> {
+    let total: usize = statements.iter().map(lines).sum();
+    let (mut cuts, mut length, mut ahead) = (Vec::new(), 0, 0);
+    for (position, statement) in statements.iter().enumerate() {
+        if is_heading(statement) || position == 0 {
+            let section = statements[position + 1..].iter();
+            let section = section.take_while(|it| !is_heading(it));
+            ahead = lines(statement) + section.map(lines).sum::<usize>();
+        }
+        let is_full = if is_heading(statement) {
+            length + ahead > FULL
+        } else {
+            length >= FULL && length + ahead > LONGEST
+        };
+        if length > 0 && is_full && total > LONGEST {
+            cuts.push(position);
+            length = 0;
+        }
+        length += lines(statement);
+        ahead -= lines(statement);
+    }
+    cuts
+}
+
+/// The names that parts need of each other.
+pub(super) fn crossing(statements: &[Statement]) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for cut in cuts(statements) {
+        let (before, after) = statements.split_at(cut);
+        let bound = bound(before);
+        body_of(after.to_vec()).walk(&mut |expr| {
+            if let Expr::Name(name) = expr
+                && bound.contains(name)
+            {
+                found.insert(name.clone());
+            }
+        });
+    }
+    found
+}
+
+fn is_heading(statement: &Statement) -> bool {
+    matches!(statement, Statement::Section(_))
 }
 
 fn body_of(statements: Vec<Statement>) -> Body {
@@ -181,9 +222,22 @@ fn body_of(statements: Vec<Statement>) -> Body {
 }
 
 /// Whether nothing of the rest needs a name of a part.
-fn is_free(part: &[Statement], rest: impl Iterator<Item = Statement>) -> bool {
+fn is_free(part: &[Statement], rest: &[Statement]) -> bool {
+    let names = bound(part);
+    // A heading belongs to what follows it.
+    let mut free = !part.last().is_some_and(is_heading);
+    body_of(rest.to_vec()).walk(&mut |expr| {
+        if let Expr::Name(name) = expr {
+            free &= !names.contains(name);
+        }
+    });
+    free
+}
+
+/// The names that statements bind.
+fn bound(statements: &[Statement]) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
-    for statement in part {
+    for statement in statements {
         match statement {
             Statement::Let { name, .. } => {
                 names.insert(name.clone());
@@ -198,13 +252,5 @@ fn is_free(part: &[Statement], rest: impl Iterator<Item = Statement>) -> bool {
             Statement::Section(_) | Statement::Set { .. } => {}
         }
     }
-    // A heading belongs to what follows it.
-    let headed = matches!(part.last(), Some(Statement::Section(_)));
-    let mut free = !headed;
-    body_of(rest.collect()).walk(&mut |expr| {
-        if let Expr::Name(name) = expr {
-            free &= !names.contains(name);
-        }
-    });
-    free
+    names
 }

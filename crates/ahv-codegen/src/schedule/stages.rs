@@ -7,9 +7,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::given::{Field, Given, Stage};
-use super::pieces::{Group, LONGEST, groups, length, sliced};
+use super::pieces::{Group, crossing, groups, length, sliced};
 use super::scope::{Scope, Target};
-use super::tree::{Body, Source, StageKind};
+use super::tree::{Source, StageKind, Statement};
 use crate::graph::{Dag, Id, Node};
 use crate::ir::{self, described};
 
@@ -80,13 +80,19 @@ impl Stage {
         kind: &'static StageKind,
         mut fields: Vec<(Id, String)>,
     ) -> Self {
-        let (mut parts, mut numbered, others) = parts(dag, model, given, kind, &fields);
-        if parts.iter().any(|part| length(part) > LONGEST) {
-            // Its parts know each other's values as fields.
-            let ids: HashSet<Id> = fields.iter().map(|(id, _)| *id).collect();
-            fields.extend(others.into_iter().filter(|(id, _)| !ids.contains(id)));
-            (parts, numbered, _) = self::parts(dag, model, given, kind, &fields);
-        }
+        let (statements, numbered) = loop {
+            let (statements, numbered, described) = filling(dag, model, given, kind, &fields);
+            // What parts need of each other is a field too.
+            let crossing = crossing(&statements);
+            let crossing = described
+                .into_iter()
+                .filter(|(_, name)| crossing.contains(name));
+            let before = fields.len();
+            fields.extend(crossing);
+            if fields.len() == before {
+                break (statements, numbered);
+            }
+        };
         // A value that is a quantity of another function is named from what it is, and so described.
         let about = |id: Id, name: &str| {
             let mut quantities = dag.quantities(id).iter().map(|&it| &model.quantities[it]);
@@ -99,7 +105,7 @@ impl Stage {
         };
         Self {
             kind,
-            parts,
+            parts: sliced(statements),
             numbered,
             names: fields.iter().cloned().collect(),
             fields: fields.into_iter().map(field).collect(),
@@ -111,13 +117,13 @@ impl Stage {
 type Named<T> = Vec<(T, String)>;
 
 /// What fills these fields; names there that are numbered, with reasons; what is bound there by a name that describes it.
-fn parts(
+fn filling(
     dag: &mut Dag,
     model: &ir::Model,
     given: Given<'_>,
     kind: &'static StageKind,
     fields: &[(Id, String)],
-) -> (Vec<Body>, Named<String>, Named<Id>) {
+) -> (Vec<Statement>, Named<String>, Named<Id>) {
     // What is handed on unchanged comes first.
     let is_leaf = |id: &Id| matches!(dag.node(*id), Node::Leaf(..));
     let ids = fields.iter().map(|(id, _)| *id);
@@ -136,7 +142,7 @@ fn parts(
     let mut statements = scope.handed_on(&leaves);
     statements.extend(scope.write(owner, &computed));
     let others = scope.described();
-    (sliced(statements), scope.numbered, others)
+    (statements, scope.numbered, others)
 }
 
 /// The stages of a model whose functions have these roots.

@@ -2,8 +2,9 @@
 
 use core::f64::consts::SQRT_2;
 
-use super::double::{LN_2, exp_of_sum};
+use super::double::exp_of_sum;
 use super::pair::Pair;
+use super::reduction::LN_2;
 
 /// (artanh s − s − s³/3 − s⁵/5)/s⁷ as a polynomial in s² for |s| ≤ (√2 − 1)/(√2 + 1); relative error of artanh s 2⁻⁶⁹.
 const ARTANH: [f64; 7] = [

@@ -1,7 +1,7 @@
 //! The tangent and the hyperbolic tangent of doubles.
 
-use super::double::{COS, SIN, cubic_pairs, power_of_two, reduced, reduced_exponent};
 use super::pair::Pair;
+use super::reduction::{COS, SIN, cubic_pairs, power_of_two, reduced, reduced_exponent};
 
 /// 2⁻³⁰: a smaller angle is its own tangent.
 const TINY: f64 = 9.313225746154785e-10;

@@ -7,7 +7,7 @@ mod package;
 use std::env;
 use std::ffi::OsStr;
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use crate::failure::Failure;
 use crate::surroundings::Surroundings;
@@ -61,11 +61,13 @@ impl Generator {
         };
         // -P: a file in the current folder must not be taken for a module.
         command.args(["-P", "-X", "utf8"]).arg(&self.package);
+        // The generator ends when this pipe is closed: with this process, however that ends.
+        command.stdin(Stdio::piped());
         command
     }
 }
 
-/// A Python that no variable of the environment changes: not where it looks for modules, not how it prints, not
+/// A Python without input that no variable of the environment changes: not where it looks for modules, not how it prints, not
 /// what it does at its end.
 fn isolated(python: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(python);
@@ -75,7 +77,7 @@ fn isolated(python: impl AsRef<OsStr>) -> Command {
             command.env_remove(name);
         }
     }
-    command.arg("-E");
+    command.arg("-E").stdin(Stdio::null());
     command
 }
 

@@ -11,13 +11,18 @@ use crate::failure::Failure;
 const PACKAGE: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/modules.rs"));
 
 /// What runs when Python is given the folder. What the caller's PYTHONPATH names comes last.
-const LAUNCHER: &str = "import os
+const LAUNCHER: &str = "import faulthandler
+import os
 import sys
 
 sys.path += filter(None, os.environ.get(\"PYTHONPATH\", \"\").split(os.pathsep))
 
 from ahv_generator.__main__ import main
+from ahv_generator.parent import end_with_standard_input
 
+# A crash is reported with its place.
+faulthandler.enable()
+end_with_standard_input()
 sys.exit(main())
 ";
 

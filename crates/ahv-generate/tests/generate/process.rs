@@ -67,6 +67,57 @@ fn a_signal_ends_the_work_and_what_is_temporary() {
     }
 }
 
+/// A process that is killed cannot end what it started: that sees the pipe close.
+#[test]
+fn a_derivation_ends_with_a_process_that_is_killed() {
+    let mut scratch = Scratch::small();
+    let started = scratch.path("started");
+    let derive = format!(
+        "echo $$ > {0}.part; mv {0}.part {0}; exec cat",
+        started.display()
+    );
+    scratch.use_python(scratch.interpreter("3 11", "", &derive));
+    let mut child = scratch.process(&["--derive"]).spawn().expect("it runs");
+    eventually("no derivation", || started.exists());
+    let python = fs::read_to_string(&started).expect("a number");
+    thread::sleep(Duration::from_millis(100));
+    assert!(is_alive(python.trim()), "it has no pipe");
+    child.kill().expect("killed");
+    child.wait().expect("it ends");
+    eventually("the derivation goes on", || !is_alive(python.trim()));
+}
+
+/// A crash of the interpreter in a family is a fault at its line.
+#[test]
+fn a_crash_of_the_interpreter_names_the_family() {
+    let mut scratch = Scratch::small();
+    scratch.write(
+        "generator/tables/crash.py",
+        "import ctypes\nctypes.string_at(0)\n",
+    );
+    let family = scratch.path("generator/tables/crash.py");
+    let report = format!(
+        "Fatal Python error: Segmentation fault\n\nCurrent thread 0x1 (most recent call first):\n         \x20 File \"/lib/ctypes/__init__.py\", line 519 in string_at\n  File \"{}\", line 2 in <module>\n",
+        family.display()
+    );
+    scratch.write("report", report);
+    let derive = format!(
+        "cat {} >&2; kill -SEGV $$",
+        scratch.path("report").display()
+    );
+    scratch.use_python(scratch.interpreter("3 11", "", &derive));
+    let output = scratch.process(&["--derive"]).output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for part in [
+        "the Python interpreter crashed: Segmentation fault",
+        "crash.py:2:1",
+        "ctypes.string_at(0)",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
 fn is_empty(folder: &Path) -> bool {
     fs::read_dir(folder).expect("a folder").next().is_none()
 }

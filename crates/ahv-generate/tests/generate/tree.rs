@@ -236,7 +236,7 @@ fn an_ir_of_another_schema_version_is_refused() {
     let scratch = Scratch::new();
     scratch.edit(
         "generated/ir/dcom.json",
-        "\"schema_version\": 4",
+        "\"schema_version\": 5",
         "\"schema_version\": 99",
     );
     let failure = scratch

@@ -1,4 +1,4 @@
-//! Tables 2 and 3, and Fig. 6: trims, poles and zeros of COM, DCOM and SDCOM.
+//! Tables 2 and 3, and Fig. 6: trims, poles and zeros of FPM, COM, DCOM and SDCOM.
 
 use ahv_analysis::linearize::linearize;
 use ahv_analysis::poles::{Pole, poles, zeros};
@@ -79,6 +79,13 @@ pub fn vehicles() -> Vec<Vehicle> {
             canard: canard.map(Canard::name),
             earth: earth.name(),
         };
+        let mut parameters = ahv_fpm::NOMINAL;
+        parameters.spherical_earth = f64::from(u8::from(earth == Earth::Spherical));
+        let first_principles = condition("fpm", fpm_set(), None);
+        vehicles.push(vehicle::<ahv_fpm::Model<f64>>(
+            first_principles,
+            &parameters,
+        ));
         let [own, ..] = com::SETS;
         let (set, parameters) = (own.name, own.parameters.with_earth(of_com));
         let rigid = condition("com_rigid", set, None);
@@ -95,6 +102,12 @@ pub fn vehicles() -> Vec<Vehicle> {
         }
     }
     vehicles
+}
+
+/// The set of the first-principles model.
+fn fpm_set() -> &'static str {
+    let own = <ahv_fpm::Model<f64> as GeneratedModel>::SETS.first();
+    own.map_or("", |set| set.name)
 }
 
 fn vehicle<M: GeneratedModel>(condition: Condition, parameters: &M::ParametersOf<f64>) -> Vehicle {

@@ -3,7 +3,7 @@
 use super::super::functions::paper_symbol;
 use super::super::latex::{Printer, Style};
 use super::super::lines::{equation, listed};
-use super::super::symbol::{Run, Shape, runs, shape};
+use super::super::symbol::{Shape, shape};
 use super::super::typeset::signed;
 use super::document;
 use crate::ir::Expr;
@@ -117,12 +117,6 @@ fn symbols_are_told_apart() {
     ] {
         assert_eq!(shape(latex), expected, "{latex}");
     }
-    let run = |text: &str, level| Run {
-        text: text.to_owned(),
-        level,
-    };
-    assert_eq!(runs(r"\dot\eta_1"), [run("η\u{307}", 0), run("1", -1)]);
-    assert_eq!(runs(r"w_\gamma"), [run("w", 0), run("γ", -1)]);
 }
 
 #[test]

@@ -36,11 +36,12 @@ m = { value = 3.0, unit = "slug" }
 
 /// Its IR.
 const IR: &str = r#"{
-  "schema_version": 4,
+  "schema_version": 5,
   "provenance": {"table": "small", "generator": "0", "casadi": "0"},
   "units": {"system": "ft-slug-s-rad", "other": "si", "factors": {"1": ["1", 1.0], "1/rad": ["1/rad", 1.0], "ft/s": ["m/s", 0.3048],
     "ft/s^2": ["m/s^2", 0.3048], "rad": ["rad", 1.0], "rad/s": ["rad/s", 1.0], "s^0.5": ["s^0.5", 1.0], "slug": ["kg", 14.5939]}},
   "joins": [],
+  "fits": [],
   "choices": [{"name": "canard", "type": "Canard", "doc": "canard", "options": [
     {"name": "free", "doc": "an input", "values": {"slaving": 0.0}},
     {"name": "slaved", "doc": "follows the elevator", "values": {"slaving": 1.0}}]}],
@@ -72,6 +73,8 @@ const IR: &str = r#"{
         "entries": [{"at": ["speed"], "expr": "speed_rate"}, {"at": ["angle"], "expr": "angle_rate"}]}]},
       {"name": "jacobians", "group": "jacobians", "doc": "Derivatives", "equation": "(1)", "outputs": [{"name": "state", "basis": ["state", "state"], "unit": null,
         "entries": [{"at": ["speed", "angle"], "expr": ["*", "u.push", ["cos", "x.angle"]]}, {"at": ["angle", "angle"], "expr": ["neg", ["*", "d_c_l_d_angle", "inverse"]]}]}]},
+      {"name": "parameter_jacobian", "group": "parameter_jacobian", "doc": "Derivatives", "equation": "(1)", "outputs": [{"name": "parameter", "basis": ["state", "parameter"], "unit": null,
+        "entries": [{"at": ["angle", "m"], "expr": ["*", "c_l", "inverse"]}, {"at": ["angle", "c_l_angle"], "expr": ["*", "x.angle", "inverse"]}, {"at": ["angle", "c_l_0"], "expr": "p.m"}]}]},
       {"name": "diffusion", "group": "diffusion", "doc": "Diffusion", "equation": "(2)", "outputs": [{"name": "diffusion", "basis": ["state", "noise"], "unit": null,
         "entries": [{"at": ["speed", "w_1"], "expr": "x.speed"}, {"at": ["angle", "w_2"], "expr": 1}]}]},
       {"name": "H_V", "group": "strict_feedback", "doc": "Total derivative", "equation": "(2)", "outputs": [{"name": "", "basis": [], "unit": "1", "entries": [{"at": [], "expr": ["*", "x.speed", "d_c_l_d_angle"]}]}]},

@@ -15,13 +15,14 @@ use crate::reproduce::vehicle::{Roots, Vehicle};
 /// What Fig. 6 shows about the origin, in rad/s: the slow modes, and the slowest roots.
 const NEAR: [(f64, &str); 2] = [(SLOW, "slow modes"), (0.0015, "next to the origin")];
 /// Files of the comparisons with Table 3.
-const FILES: [(&str, &str); 3] = [
+const FILES: [(&str, &str); 4] = [
+    ("fpm", "table3_fpm.csv"),
     ("com", "table3_com.csv"),
     ("dcom", "table3_dcom.csv"),
     ("sdcom", "table3_sdcom.csv"),
 ];
 /// Sets of parameters that are set beside Table 3.
-const SETS: [&str; 2] = ["section5.1", "section5.3"];
+const SETS: [&str; 3] = ["section5.1", "section5.3", "quoted"];
 
 /// A root as text; of a pair both.
 fn text([re, im]: Root) -> String {
@@ -305,6 +306,7 @@ fn doubtful(origins: &[Provenance]) -> Provenance {
 fn map(vehicles: &[Vehicle]) -> Result<String, PlotError> {
     let mut panels = Vec::new();
     for (model, set) in [
+        ("fpm", SETS[2]),
         ("com", SETS[0]),
         ("dcom", SETS[0]),
         ("dcom", SETS[1]),

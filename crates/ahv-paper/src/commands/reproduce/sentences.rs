@@ -3,6 +3,9 @@
 //! A [`Sentence`] can be made in this module only, so that no section can claim what was not computed. The tests go through
 //! all functions, with facts for and against.
 
+mod table1;
+mod table3;
+
 use std::fmt;
 
 use ahv_analysis::statistics::Estimate;
@@ -13,7 +16,8 @@ use crate::commands::reduce::{bargain, greatest};
 use crate::reduce::{Comparison, StdErrors};
 use crate::reproduce::Size;
 use crate::reproduce::p_value::{LEVEL, PValue, Verdict};
-use crate::reproduce::pairing::{LIMIT, SLOW};
+pub(super) use table1::*;
+pub(super) use table3::*;
 
 /// Largest error, as a share of η, with which η̂ counts as following it.
 const FOLLOWS: f64 = 0.25;
@@ -124,101 +128,6 @@ pub(super) fn method(size: &Size) -> Sentence {
          stands. Processes start at rest.",
         size.repeats,
         size.most_repeats.max(size.repeats)
-    ))
-}
-
-/// The standard deviations of Table 1 with held noise: medians over printed values, and verdicts.
-pub(super) fn deviations(ratios: &[f64], verdicts: &[Verdict]) -> Finding {
-    let off = ratios
-        .iter()
-        .fold(0.0, |off: f64, ratio| off.max((ratio - 1.0).abs()));
-    finding(
-        !verdicts.contains(&Verdict::Outside),
-        format!(
-            "Table 1, standard deviations, if the noise is a number held for each step: medians within {} of the printed values; \
-             {}.",
-            percent(off),
-            count(verdicts)
-        ),
-    )
-}
-
-/// All entries of Table 1 with white noise.
-pub(super) fn white(sigma: f64, ratios: &[f64], verdicts: &[Verdict]) -> Finding {
-    let (low, high) = ratios
-        .iter()
-        .fold((f64::INFINITY, 0.0_f64), |(low, high), &ratio| {
-            (low.min(ratio), high.max(ratio))
-        });
-    finding(
-        !verdicts.contains(&Verdict::Outside),
-        format!(
-            "Table 1 with white noise of intensity {sigma}², as in the text: {}; ours are {low:.1} to {high:.1} times the printed \
-             ones.",
-            count(verdicts)
-        ),
-    )
-}
-
-/// The means of Table 1 with held noise, and the reading that most entries fit.
-pub(super) fn means(
-    runs: u64,
-    verdicts: &[Verdict],
-    best: Option<(&str, usize, usize)>,
-) -> Finding {
-    let best = best.map_or_else(String::new, |(name, fits, of)| {
-        format!(" Most entries ({fits} of {of}) are inside with this reading: {name}.")
-    });
-    finding(
-        !verdicts.contains(&Verdict::Outside),
-        format!(
-            "Table 1, means, if the noise is a number held for each step, with {runs} runs: {}.{best}",
-            count(verdicts)
-        ),
-    )
-}
-
-/// Facts behind an entry of Table 1.
-pub(super) struct Entry<'a> {
-    /// Median with white noise over the printed value.
-    pub(super) white_ratio: f64,
-    /// Of a standard deviation: the greatest error of infinitely many runs with held noise, at the samples and between them.
-    pub(super) exact: Option<[f64; 2]>,
-    /// Held noise, a noise each.
-    pub(super) held: &'a Estimate,
-    /// Held noise, one noise.
-    pub(super) common: (&'a Estimate, &'a PValue),
-    /// Held noise with fewer runs.
-    pub(super) fewer: (u64, &'a Estimate, &'a PValue),
-}
-
-/// What explains an entry of Table 1.
-pub(super) fn entry(facts: &Entry<'_>) -> Sentence {
-    let Entry {
-        white_ratio,
-        exact,
-        held,
-        common: (common, common_p),
-        fewer: (runs, fewer, fewer_p),
-    } = facts;
-    let exact = exact.map_or_else(String::new, |exact| {
-        let [at, between] = exact.map(significant);
-        format!(" Infinitely many runs with held noise give {at} at the samples and {between} between them.")
-    });
-    let change = if common.value < held.value {
-        "smaller"
-    } else {
-        "larger"
-    };
-    Sentence(format!(
-        "White noise gives {white_ratio:.1} times the printed value.{exact} With one noise for η and χ, held noise gives {}, \
-         {change} (p {}, {}); with {runs} runs {} (p {}, {}).",
-        interval(common),
-        p_value(common_p),
-        verdict(common_p.verdict),
-        interval(fewer),
-        p_value(fewer_p),
-        verdict(fewer_p.verdict)
     ))
 }
 
@@ -436,154 +345,5 @@ const fn word(status: Status) -> &'static str {
     }
 }
 
-/// How roots are paired.
-pub(super) fn pairing() -> Sentence {
-    Sentence(format!(
-        "Poles and zeros of y = [V, γ], u = [δe, φ] at the trims above, on the flat Earth without canard. Roots are compared \
-         within a kind. Our poles are rigid, flexible or noise by the states that participate; a zero that cancels a pole of noise is that \
-         of the noise. Printed roots, and other zeros of models with flexible states, are flexible if they are pairs above {SLOW} \
-         rad/s, else rigid. Two roots correspond only if they differ by at most {} of the larger. Within that limit as many \
-         correspond as can, such that the sum of the relative differences is least. All others have no counterpart. The FPM's \
-         column is not compared.",
-        percent(LIMIT)
-    ))
-}
-
-/// How many printed roots have a counterpart.
-pub(super) fn counterparts(model: &str, set: &str, found: usize, of: usize) -> Finding {
-    finding(
-        found == of,
-        format!(
-            "Table 3, {}, set {set}: {found} of {of} printed poles and zeros (a pair counts once) have a counterpart within {}.",
-            model.to_uppercase(),
-            percent(LIMIT)
-        ),
-    )
-}
-
-/// Damping ratios of the flexible poles printed for the DCOM beside those of section 5.1.
-pub(super) fn dampings([low, high]: [f64; 2], [from, to]: [f64; 2]) -> Finding {
-    let apart = high < from || to < low;
-    let verdict = if apart {
-        "the ranges are apart, so that section 5.3 rests on other modal data than section 5.1: hence two sets of parameters here"
-    } else {
-        "the ranges overlap"
-    };
-    finding(
-        !apart,
-        format!(
-            "Table 3: its flexible poles of the DCOM have damping ratios of {low:.3} to {high:.3}, those of (36) are {from} to {to}; \
-             {verdict}."
-        ),
-    )
-}
-
-/// The short period of the DCOM in a set beside the printed one, and how far that set trims from Table 2.
-pub(super) fn short_period(set: &str, ours: [f64; 2], printed: [f64; 2], trim: f64) -> Finding {
-    let off = ours
-        .iter()
-        .zip(&printed)
-        .fold(0.0, |off: f64, (ours, printed)| {
-            off.max((ours / printed - 1.0).abs())
-        });
-    let but = if trim < AGREES {
-        "and the set trims"
-    } else {
-        "but the set trims"
-    };
-    finding(
-        off < AGREES,
-        format!(
-            "Table 3, DCOM: the short period of set {set} is {} and {}, printed are {} and {} (within {}); {but} {} away from Table 2.",
-            significant(ours[0]),
-            significant(ours[1]),
-            significant(printed[0]),
-            significant(printed[1]),
-            percent(off),
-            percent(trim)
-        ),
-    )
-}
-
-/// Number of poles of the SDCOM: ours, of which real ones of the noise, and the printed ones with their complex flexible pairs.
-pub(super) fn sdcom(ours: usize, noise: usize, printed: usize, pairs: usize) -> Finding {
-    let agrees = ours == printed;
-    let end = if agrees {
-        "as many."
-    } else {
-        "which cannot come from (27)."
-    };
-    finding(
-        agrees,
-        format!(
-            "SDCOM of (27) has {ours} states and so {ours} poles, of which {noise} are the real -a of the coloured noises. Table 3 \
-             prints {printed}, {pairs} complex flexible pairs among them, {end}"
-        ),
-    )
-}
-
-/// Where ω and ζ of a set come from, and how near the real parts of its flexible poles are to the printed ones.
-pub(super) fn modal_data(set: &str, origin: Provenance, off: f64) -> Finding {
-    let circular = origin.source == "table-3";
-    let end = if circular {
-        "This agreement is circular: it holds by construction, and is no evidence"
-    } else {
-        "Table 3 is not among the sources"
-    };
-    finding(
-        !circular && off < AGREES,
-        format!(
-            "Set {set} takes ω and ζ of the flexible modes from the source {} ({}). The real parts of its flexible poles are within \
-             {} of the printed ones. {end}.",
-            origin.source,
-            word(origin.status),
-            percent(off)
-        ),
-    )
-}
-
-/// Where ω of the COM comes from, and whether it is the imaginary parts that Table 3 prints for the coupled vehicle.
-pub(super) fn clamped(origin: Provenance, omegas: &[f64], coupled: bool) -> Finding {
-    let values: Vec<String> = omegas.iter().map(|&it| significant(it)).collect();
-    let end = if coupled {
-        "They are the imaginary parts that Table 3 prints, frequencies of the coupled vehicle, used here as clamped ones: the \
-         coupling comes twice, and the flexible roots of the COM are no test"
-    } else {
-        "They are not the imaginary parts that Table 3 prints"
-    };
-    finding(
-        !coupled,
-        format!(
-            "The COM takes ω = {} rad/s of its clamped modes from the source {} ({}). {end}.",
-            list(&values),
-            origin.source,
-            word(origin.status)
-        ),
-    )
-}
-
-/// How far mass and inertia of a set can be trusted.
-pub(super) fn mass(set: &str, mass: Provenance, inertia: Provenance) -> Finding {
-    let sure = [mass, inertia]
-        .iter()
-        .all(|it| matches!(it.status, Status::Published | Status::Derived));
-    let end = if sure {
-        ""
-    } else {
-        ": what depends on them, the short period above all, is no confirmation"
-    };
-    finding(
-        sure,
-        format!(
-            "m of set {set} is {} (source {}), I_yy {} (source {}){end}.",
-            word(mass.status),
-            mass.source,
-            word(inertia.status),
-            inertia.source
-        ),
-    )
-}
-
 #[cfg(test)]
-#[path = "sentences_tests.rs"]
 mod tests;

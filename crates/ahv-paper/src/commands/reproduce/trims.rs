@@ -58,7 +58,7 @@ pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Section 
         Cell::number(TABLE_2.delta_e_deg),
     ];
     first.extend(TABLE_2.eta.map(Cell::number));
-    let mut cantilever = vec![Cell::words("printed (η of COM)")];
+    let mut cantilever = vec![Cell::words("printed (η of FPM and COM)")];
     cantilever.extend((0..3).map(|_| Cell::words("")));
     cantilever.extend(TABLE_2.eta_cantilever.map(Cell::number));
     let mut rows = Vec::from([first, cantilever].map(Row::from));
@@ -70,7 +70,7 @@ pub(super) fn section(vehicles: &[Vehicle], findings: &mut Findings) -> Section 
                 row.push(beside(trim.alpha_deg, TABLE_2.alpha_deg));
                 row.push(beside(trim.phi, TABLE_2.phi));
                 row.push(beside(trim.delta_e_deg, TABLE_2.delta_e_deg));
-                let printed: &[f64] = if vehicle.condition.model == "com" {
+                let printed: &[f64] = if ["fpm", "com"].contains(&vehicle.condition.model) {
                     &TABLE_2.eta_cantilever
                 } else {
                     &TABLE_2.eta

@@ -29,7 +29,7 @@ ahv_core::record! {
         half_c_m_mach_q_hat_over_a, i_zz_minus_i_xx_times_inv_i_yy, two_i_xz_over_i_yy,
         i_xz_2_plus_i_xx_times_d2_yaw_torque_d_roll_rate_d_pitch_rate_inv_inertia,
         d2_roll_torque_d_pitch_rate_d_yaw_rate_minus_i_xx_times_i_xz_over_inertia, minus_six_k_norm, minus_two_k_norm,
-        inv_m_g, i_xz_2, b_2, inv_inertia_2, inv_a_2, inv_g,
+        inv_m_g, i_xz_2,
     }
     from Parameters {
         rho_0,
@@ -83,9 +83,9 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.two_c_d_alpha_2_mach = R::TWO * p.c_d_alpha_2_mach;
     c.two_c_l_alpha_2 = R::TWO * p.c_l_alpha_2;
     c.two_c_d_beta_2 = R::TWO * p.c_d_beta_2;
-    c.b_2 = p.b * p.b;
-    c.half_b_2_c_n_p_hat = R::HALF * c.b_2 * p.c_n_p_hat;
-    c.half_b_2_c_r_r_hat = R::HALF * c.b_2 * p.c_r_r_hat;
+    let b_2 = p.b * p.b;
+    c.half_b_2_c_n_p_hat = R::HALF * b_2 * p.c_n_p_hat;
+    c.half_b_2_c_r_r_hat = R::HALF * b_2 * p.c_r_r_hat;
     c.two_c_m_alpha_2 = R::TWO * p.c_m_alpha_2;
     c.two_i_xz = R::TWO * p.i_xz;
     c.two_k_norm = R::TWO * p.k_norm;
@@ -98,10 +98,10 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.inv_m_2 = c.inv_m * c.inv_m;
     c.inv_h_s_2 = c.inv_h_s * c.inv_h_s;
     c.i_xz_over_inertia = p.i_xz * c.inv_inertia;
-    c.inv_inertia_2 = c.inv_inertia * c.inv_inertia;
-    c.inv_inertia_2_i_zz = c.inv_inertia_2 * p.i_zz;
-    c.inv_inertia_2_i_xx = c.inv_inertia_2 * p.i_xx;
-    c.two_inv_inertia_2_i_xz = R::TWO * c.inv_inertia_2 * p.i_xz;
+    let inv_inertia_2 = c.inv_inertia * c.inv_inertia;
+    c.inv_inertia_2_i_zz = inv_inertia_2 * p.i_zz;
+    c.inv_inertia_2_i_xx = inv_inertia_2 * p.i_xx;
+    c.two_inv_inertia_2_i_xz = R::TWO * inv_inertia_2 * p.i_xz;
     c.i_zz_b = p.i_zz * p.b;
     c.half_c_r_r_hat = R::HALF * p.c_r_r_hat;
     c.half_c_n_p_hat = R::HALF * p.c_n_p_hat;
@@ -118,10 +118,10 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.i_xz_b_over_a = p.i_xz * p.b * c.inv_a;
     c.i_xx_x_cg_over_inertia = p.i_xx * c.inv_inertia * p.x_cg;
     c.i_xx_b_over_inertia = p.i_xx * c.inv_inertia * p.b;
-    c.inv_a_2 = c.inv_a * c.inv_a;
-    c.two_c_l_alpha_mach_2_inv_a_2 = R::TWO * p.c_l_alpha_mach_2 * c.inv_a_2;
-    c.two_c_d_mach_2_times_inv_a_2 = R::TWO * p.c_d_mach_2 * c.inv_a_2;
-    c.two_c_t_throttle_mach_2_inv_a_2 = R::TWO * p.c_t_throttle_mach_2 * c.inv_a_2;
+    let inv_a_2 = c.inv_a * c.inv_a;
+    c.two_c_l_alpha_mach_2_inv_a_2 = R::TWO * p.c_l_alpha_mach_2 * inv_a_2;
+    c.two_c_d_mach_2_times_inv_a_2 = R::TWO * p.c_d_mach_2 * inv_a_2;
+    c.two_c_t_throttle_mach_2_inv_a_2 = R::TWO * p.c_t_throttle_mach_2 * inv_a_2;
     c.two_c_d_alpha_2_mach_times_inv_a = R::TWO * p.c_d_alpha_2_mach * c.inv_a;
     c.c_y_beta_mach_over_a = p.c_y_beta_mach * c.inv_a;
     c.c_r_mach_p_hat_over_a = p.c_r_mach_p_hat * c.inv_a;
@@ -131,10 +131,10 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     c.c_r_beta_mach_over_a = p.c_r_beta_mach * c.inv_a;
     c.c_n_beta_mach_over_a = p.c_n_beta_mach * c.inv_a;
     c.half_c_r_mach_p_hat_over_a = R::HALF * p.c_r_mach_p_hat * c.inv_a;
-    c.b_2_c_n_p_hat = c.b_2 * p.c_n_p_hat;
+    c.b_2_c_n_p_hat = b_2 * p.c_n_p_hat;
     c.i_zz_plus_d2_yaw_torque_d_roll_rate_d_pitch_rate_times_i_xz_over_inertia = c.inv_inertia * p.i_xz
         * (p.i_zz + c.d2_yaw_torque_d_roll_rate_d_pitch_rate);
-    c.b_2_c_r_r_hat = c.b_2 * p.c_r_r_hat;
+    c.b_2_c_r_r_hat = b_2 * p.c_r_r_hat;
     c.half_c_n_mach_r_hat_over_a = R::HALF * p.c_n_mach_r_hat * c.inv_a;
     c.i_zz_times_d2_roll_torque_d_pitch_rate_d_yaw_rate_minus_i_xz_2_inv_inertia = c.inv_inertia
         * (p.i_zz * c.d2_roll_torque_d_pitch_rate_d_yaw_rate - c.i_xz_2);
@@ -151,7 +151,7 @@ pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
         * (c.d2_roll_torque_d_pitch_rate_d_yaw_rate - p.i_xx);
     c.minus_six_k_norm = R::from_f64(-6.0) * p.k_norm;
     c.minus_two_k_norm = R::from_f64(-2.0) * p.k_norm;
-    c.inv_g = p.g.recip();
-    c.inv_m_g = c.inv_m * c.inv_g;
+    let inv_g = p.g.recip();
+    c.inv_m_g = c.inv_m * inv_g;
     c
 }

@@ -95,7 +95,7 @@ ahv_core::record! {
         c_m_alpha_mach_alpha_plus_c_m_mach_delta_e_delta_e_plus_c_m_mach_q_hat_q_hat,
         c_n_beta_mach_beta_plus_c_n_mach_delta_r_delta_r_plus_c_n_mach_r_hat_r_hat, q_0_2, q_1_2, q_2_2, q_3_2,
         inv_norm_squared, one_minus_norm_squared, sin_beta, cos_beta, a_x_cos_alpha_plus_a_z_sin_alpha, inv_cos_beta,
-        roll_rate_2, yaw_rate_2, q_1_q_2, q_0_q_3, q_1_q_3, q_0_q_2, q_2_q_3, q_0_q_1,
+        roll_rate_2, yaw_rate_2,
     }
 }
 
@@ -167,12 +167,6 @@ fn intermediates_part_1<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
     i.c_m_alpha_mach_alpha_plus_c_m_mach_delta_e_delta_e_plus_c_m_mach_q_hat_q_hat = p.c_m_alpha_mach * x.alpha
         + p.c_m_mach_delta_e * u.delta_e
         + p.c_m_mach_q_hat * i.q_hat;
-}
-
-/// Fills a part of [`Intermediates`].
-#[inline(always)]
-fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Input<R>, p: &Prepared<R>) {
-    // Moments, (3)
     i.c_m = p.c_m_0
         + i.mach * i.c_m_alpha_mach_alpha_plus_c_m_mach_delta_e_delta_e_plus_c_m_mach_q_hat_q_hat
         + p.c_m_alpha * x.alpha
@@ -190,7 +184,11 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
         + p.c_n_p_hat * i.p_hat
         + p.c_n_r_hat * i.r_hat;
     i.yawing_moment = i.reference_force * p.b * i.c_n + p.x_cg * i.side_force; // N*m
+}
 
+/// Fills a part of [`Intermediates`].
+#[inline(always)]
+fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, p: &Prepared<R>) {
     // Attitude, (4)
     i.q_0_2 = x.q_0 * x.q_0;
     i.q_1_2 = x.q_1 * x.q_1;
@@ -199,19 +197,19 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
     i.norm_squared = i.q_0_2 + i.q_1_2 + i.q_2_2 + i.q_3_2;
     i.inv_norm_squared = i.norm_squared.recip();
     i.to_north_x = (i.q_0_2 + i.q_1_2 - i.q_2_2 - i.q_3_2) * i.inv_norm_squared;
-    i.q_1_q_2 = x.q_1 * x.q_2;
-    i.q_0_q_3 = x.q_0 * x.q_3;
-    i.to_north_y = R::TWO * (i.q_1_q_2 - i.q_0_q_3) * i.inv_norm_squared;
-    i.q_1_q_3 = x.q_1 * x.q_3;
-    i.q_0_q_2 = x.q_0 * x.q_2;
-    i.to_north_z = R::TWO * (i.q_1_q_3 + i.q_0_q_2) * i.inv_norm_squared;
-    i.to_east_x = R::TWO * (i.q_1_q_2 + i.q_0_q_3) * i.inv_norm_squared;
+    let q_1_q_2 = x.q_1 * x.q_2;
+    let q_0_q_3 = x.q_0 * x.q_3;
+    i.to_north_y = R::TWO * (q_1_q_2 - q_0_q_3) * i.inv_norm_squared;
+    let q_1_q_3 = x.q_1 * x.q_3;
+    let q_0_q_2 = x.q_0 * x.q_2;
+    i.to_north_z = R::TWO * (q_1_q_3 + q_0_q_2) * i.inv_norm_squared;
+    i.to_east_x = R::TWO * (q_1_q_2 + q_0_q_3) * i.inv_norm_squared;
     i.to_east_y = (i.q_0_2 - i.q_1_2 + i.q_2_2 - i.q_3_2) * i.inv_norm_squared;
-    i.q_2_q_3 = x.q_2 * x.q_3;
-    i.q_0_q_1 = x.q_0 * x.q_1;
-    i.to_east_z = R::TWO * (i.q_2_q_3 - i.q_0_q_1) * i.inv_norm_squared;
-    i.downward_x = R::TWO * (i.q_1_q_3 - i.q_0_q_2) * i.inv_norm_squared;
-    i.downward_y = R::TWO * (i.q_2_q_3 + i.q_0_q_1) * i.inv_norm_squared;
+    let q_2_q_3 = x.q_2 * x.q_3;
+    let q_0_q_1 = x.q_0 * x.q_1;
+    i.to_east_z = R::TWO * (q_2_q_3 - q_0_q_1) * i.inv_norm_squared;
+    i.downward_x = R::TWO * (q_1_q_3 - q_0_q_2) * i.inv_norm_squared;
+    i.downward_y = R::TWO * (q_2_q_3 + q_0_q_1) * i.inv_norm_squared;
     i.downward_z = (i.q_0_2 - i.q_1_2 - i.q_2_2 + i.q_3_2) * i.inv_norm_squared;
     i.one_minus_norm_squared = R::ONE - i.norm_squared;
     i.norm_return = p.k_norm * i.one_minus_norm_squared; // 1/s
@@ -245,7 +243,7 @@ fn intermediates_part_2<R: Real>(i: &mut Intermediates<R>, x: &State<R>, u: &Inp
 pub fn intermediates<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Intermediates<R> {
     let mut i = Intermediates::splat(R::ZERO);
     intermediates_part_1(&mut i, x, u, p);
-    intermediates_part_2(&mut i, x, u, p);
+    intermediates_part_2(&mut i, x, p);
     i
 }
 
@@ -313,7 +311,8 @@ ahv_core::record! {
         a_z_cos_alpha_minus_a_x_sin_alpha_times_sin_beta_over_velocity, sin_beta_2, minus_half_q_1, minus_half_q_2,
         minus_half_q_3, q_0_two_k_norm_q_1, q_0_two_k_norm_q_2, q_0_two_k_norm_q_3, half_q_0, half_q_2,
         q_1_two_k_norm_q_2, q_1_two_k_norm_q_3, half_q_3, q_2_two_k_norm_q_3, to_north_x_cos_alpha,
-        to_north_z_sin_alpha, to_east_x_cos_alpha, to_east_z_sin_alpha,
+        to_north_z_sin_alpha, to_east_x_cos_alpha, to_east_z_sin_alpha, q_2_over_norm_squared, q_1_over_norm_squared,
+        q_0_over_norm_squared, q_3_over_norm_squared,
     }
 }
 
@@ -398,87 +397,87 @@ fn slopes_part_1<R: Real>(s: &mut Slopes<R>, x: &State<R>, u: &Input<R>, p: &Pre
 
     // Derivatives with respect to pitch_rate
     s.d_c_m_d_pitch_rate = s.slope_of_c_m_in_q_hat * p.half_c_bar * i.inv_velocity; // s/rad
+
+    // Derivatives with respect to yaw_rate
+    s.d_c_n_d_yaw_rate = s.slope_of_c_n_in_r_hat * p.half_b * i.inv_velocity; // s/rad
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_2<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>) {
-    // Derivatives with respect to yaw_rate
-    s.d_c_n_d_yaw_rate = s.slope_of_c_n_in_r_hat * p.half_b * i.inv_velocity; // s/rad
-
     // Derivatives with respect to q_0
     s.slope_of_downward_x_in_norm_squared = -i.downward_x * i.inv_norm_squared;
-    let q_2_over_norm_squared = x.q_2 * i.inv_norm_squared;
-    s.d_downward_x_d_q_0 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_0 - R::TWO * q_2_over_norm_squared;
+    s.q_2_over_norm_squared = x.q_2 * i.inv_norm_squared;
+    s.d_downward_x_d_q_0 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_0 - R::TWO * s.q_2_over_norm_squared;
     s.d_a_x_d_q_0 = p.g * s.d_downward_x_d_q_0; // m/s^2
     s.slope_of_downward_y_in_norm_squared = -i.downward_y * i.inv_norm_squared;
-    let q_1_over_norm_squared = x.q_1 * i.inv_norm_squared;
-    s.d_downward_y_d_q_0 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_0;
+    s.q_1_over_norm_squared = x.q_1 * i.inv_norm_squared;
+    s.d_downward_y_d_q_0 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_0;
     s.d_a_y_d_q_0 = p.g * s.d_downward_y_d_q_0; // m/s^2
     s.slope_of_downward_z_in_norm_squared = -i.downward_z * i.inv_norm_squared;
-    let q_0_over_norm_squared = x.q_0 * i.inv_norm_squared;
-    s.d_downward_z_d_q_0 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_0;
+    s.q_0_over_norm_squared = x.q_0 * i.inv_norm_squared;
+    s.d_downward_z_d_q_0 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_0;
     s.d_a_z_d_q_0 = p.g * s.d_downward_z_d_q_0; // m/s^2
     s.slope_of_to_north_x_in_norm_squared = -i.to_north_x * i.inv_norm_squared;
-    s.d_to_north_x_d_q_0 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_0;
+    s.d_to_north_x_d_q_0 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_0;
     s.slope_of_to_north_y_in_norm_squared = -i.to_north_y * i.inv_norm_squared;
-    let q_3_over_norm_squared = x.q_3 * i.inv_norm_squared;
-    s.d_to_north_y_d_q_0 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_0 - R::TWO * q_3_over_norm_squared;
+    s.q_3_over_norm_squared = x.q_3 * i.inv_norm_squared;
+    s.d_to_north_y_d_q_0 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_0 - R::TWO * s.q_3_over_norm_squared;
     s.slope_of_to_north_z_in_norm_squared = -i.to_north_z * i.inv_norm_squared;
-    s.d_to_north_z_d_q_0 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_0;
+    s.d_to_north_z_d_q_0 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_0;
     s.slope_of_to_east_x_in_norm_squared = -i.to_east_x * i.inv_norm_squared;
-    s.d_to_east_x_d_q_0 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_0;
+    s.d_to_east_x_d_q_0 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_0;
     s.slope_of_to_east_y_in_norm_squared = -i.to_east_y * i.inv_norm_squared;
-    s.d_to_east_y_d_q_0 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_0;
+    s.d_to_east_y_d_q_0 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_0;
     s.slope_of_to_east_z_in_norm_squared = -i.to_east_z * i.inv_norm_squared;
-    s.d_to_east_z_d_q_0 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_0 - R::TWO * q_1_over_norm_squared;
+    s.d_to_east_z_d_q_0 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_0 - R::TWO * s.q_1_over_norm_squared;
 
     // Derivatives with respect to q_1
-    s.d_downward_x_d_q_1 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_1;
+    s.d_downward_x_d_q_1 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_1;
     s.d_a_x_d_q_1 = p.g * s.d_downward_x_d_q_1; // m/s^2
-    s.d_downward_y_d_q_1 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_1;
+    s.d_downward_y_d_q_1 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_1;
     s.d_a_y_d_q_1 = p.g * s.d_downward_y_d_q_1; // m/s^2
-    s.d_downward_z_d_q_1 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_1 - R::TWO * q_1_over_norm_squared;
+    s.d_downward_z_d_q_1 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_1 - R::TWO * s.q_1_over_norm_squared;
     s.d_a_z_d_q_1 = p.g * s.d_downward_z_d_q_1; // m/s^2
-    s.d_to_north_x_d_q_1 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_1;
-    s.d_to_north_y_d_q_1 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_1;
-    s.d_to_north_z_d_q_1 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_1;
-    s.d_to_east_x_d_q_1 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_1;
-    s.d_to_east_y_d_q_1 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_1 - R::TWO * q_1_over_norm_squared;
-    s.d_to_east_z_d_q_1 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_1 - R::TWO * q_0_over_norm_squared;
+    s.d_to_north_x_d_q_1 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_1;
+    s.d_to_north_y_d_q_1 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_1;
+    s.d_to_north_z_d_q_1 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_1;
+    s.d_to_east_x_d_q_1 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_1;
+    s.d_to_east_y_d_q_1 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_1 - R::TWO * s.q_1_over_norm_squared;
+    s.d_to_east_z_d_q_1 = R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_1 - R::TWO * s.q_0_over_norm_squared;
 
     // Derivatives with respect to q_2
-    s.d_downward_x_d_q_2 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_2 - R::TWO * q_0_over_norm_squared;
+    s.d_downward_x_d_q_2 = R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_2 - R::TWO * s.q_0_over_norm_squared;
     s.d_a_x_d_q_2 = p.g * s.d_downward_x_d_q_2; // m/s^2
-    s.d_downward_y_d_q_2 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_2;
+    s.d_downward_y_d_q_2 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_2;
     s.d_a_y_d_q_2 = p.g * s.d_downward_y_d_q_2; // m/s^2
-    s.d_downward_z_d_q_2 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_2 - R::TWO * q_2_over_norm_squared;
+    s.d_downward_z_d_q_2 = R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_2 - R::TWO * s.q_2_over_norm_squared;
     s.d_a_z_d_q_2 = p.g * s.d_downward_z_d_q_2; // m/s^2
-    s.d_to_north_x_d_q_2 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_2 - R::TWO * q_2_over_norm_squared;
-    s.d_to_north_y_d_q_2 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_2;
-    s.d_to_north_z_d_q_2 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_2;
-    s.d_to_east_x_d_q_2 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_2;
-    s.d_to_east_y_d_q_2 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_2;
-    s.d_to_east_z_d_q_2 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_2;
-
-    // Derivatives with respect to q_3
-    s.d_downward_x_d_q_3 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_3;
-    s.d_a_x_d_q_3 = p.g * s.d_downward_x_d_q_3; // m/s^2
-    s.d_downward_y_d_q_3 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_3;
-    s.d_a_y_d_q_3 = p.g * s.d_downward_y_d_q_3; // m/s^2
-    s.d_downward_z_d_q_3 = R::TWO * q_3_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_3;
-    s.d_a_z_d_q_3 = p.g * s.d_downward_z_d_q_3; // m/s^2
-    s.d_to_north_x_d_q_3 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_3 - R::TWO * q_3_over_norm_squared;
-    s.d_to_north_y_d_q_3 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_3 - R::TWO * q_0_over_norm_squared;
-    s.d_to_north_z_d_q_3 = R::TWO * q_1_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_3;
-    s.d_to_east_x_d_q_3 = R::TWO * q_0_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_3;
-    s.d_to_east_y_d_q_3 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_3 - R::TWO * q_3_over_norm_squared;
-    s.d_to_east_z_d_q_3 = R::TWO * q_2_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_3;
+    s.d_to_north_x_d_q_2 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_2 - R::TWO * s.q_2_over_norm_squared;
+    s.d_to_north_y_d_q_2 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_2;
+    s.d_to_north_z_d_q_2 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_2;
+    s.d_to_east_x_d_q_2 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_2;
+    s.d_to_east_y_d_q_2 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_2;
+    s.d_to_east_z_d_q_2 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_2;
 }
 
 /// Fills a part of [`Slopes`].
 #[inline(always)]
 fn slopes_part_3<R: Real>(s: &mut Slopes<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>) {
+    // Derivatives with respect to q_3
+    s.d_downward_x_d_q_3 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_downward_x_in_norm_squared * x.q_3;
+    s.d_a_x_d_q_3 = p.g * s.d_downward_x_d_q_3; // m/s^2
+    s.d_downward_y_d_q_3 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_downward_y_in_norm_squared * x.q_3;
+    s.d_a_y_d_q_3 = p.g * s.d_downward_y_d_q_3; // m/s^2
+    s.d_downward_z_d_q_3 = R::TWO * s.q_3_over_norm_squared + R::TWO * s.slope_of_downward_z_in_norm_squared * x.q_3;
+    s.d_a_z_d_q_3 = p.g * s.d_downward_z_d_q_3; // m/s^2
+    s.d_to_north_x_d_q_3 = R::TWO * s.slope_of_to_north_x_in_norm_squared * x.q_3 - R::TWO * s.q_3_over_norm_squared;
+    s.d_to_north_y_d_q_3 = R::TWO * s.slope_of_to_north_y_in_norm_squared * x.q_3 - R::TWO * s.q_0_over_norm_squared;
+    s.d_to_north_z_d_q_3 = R::TWO * s.q_1_over_norm_squared + R::TWO * s.slope_of_to_north_z_in_norm_squared * x.q_3;
+    s.d_to_east_x_d_q_3 = R::TWO * s.q_0_over_norm_squared + R::TWO * s.slope_of_to_east_x_in_norm_squared * x.q_3;
+    s.d_to_east_y_d_q_3 = R::TWO * s.slope_of_to_east_y_in_norm_squared * x.q_3 - R::TWO * s.q_3_over_norm_squared;
+    s.d_to_east_z_d_q_3 = R::TWO * s.q_2_over_norm_squared + R::TWO * s.slope_of_to_east_z_in_norm_squared * x.q_3;
+
     // Derivatives with respect to altitude
     s.d_density_d_altitude = -i.density * p.inv_h_s; // kg/m^4
     let d_dynamic_pressure_d_altitude = R::HALF * i.velocity_2 * s.d_density_d_altitude; // N/m^3
@@ -606,21 +605,12 @@ ahv_core::record! {
         cos_alpha_times_d_a_x_d_q_3_plus_sin_alpha_times_d_a_z_d_q_3, minus_two_k_norm_q_1, minus_two_k_norm_q_0,
         minus_two_k_norm_q_2, minus_two_k_norm_q_3, to_north_z_cos_alpha, to_north_x_sin_alpha,
         to_north_x_cos_alpha_plus_to_north_z_sin_alpha, to_east_z_cos_alpha, to_east_x_sin_alpha,
-        to_east_x_cos_alpha_plus_to_east_z_sin_alpha, d2_dynamic_pressure_d_velocity_d_altitude,
-        d2_lift_d_velocity_d_altitude, d2_drag_d_velocity_d_altitude, d2_thrust_d_velocity_d_altitude,
-        d2_axial_force_d_velocity_d_altitude, d2_side_force_d_velocity_d_altitude, d2_lift_d_alpha_d_altitude,
-        d2_drag_d_alpha_d_altitude, d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude,
-        d2_axial_force_d_alpha_d_altitude, d2_drag_d_beta_d_altitude, d2_axial_force_d_beta_d_altitude,
+        to_east_x_cos_alpha_plus_to_east_z_sin_alpha, d2_side_force_d_velocity_d_altitude,
         d2_side_force_d_beta_d_altitude, d_slope_of_downward_x_in_norm_squared_d_q_1,
         d_slope_of_downward_y_in_norm_squared_d_q_1, d_slope_of_downward_z_in_norm_squared_d_q_1,
         d_slope_of_downward_x_in_norm_squared_d_q_2, d_slope_of_downward_y_in_norm_squared_d_q_2,
         d_slope_of_downward_z_in_norm_squared_d_q_2, d_slope_of_downward_x_in_norm_squared_d_q_3,
         d_slope_of_downward_y_in_norm_squared_d_q_3, d_slope_of_downward_z_in_norm_squared_d_q_3,
-        d2_density_d_altitude_d_altitude, d2_dynamic_pressure_d_altitude_d_altitude, d2_lift_d_altitude_d_altitude,
-        d2_drag_d_altitude_d_altitude, d2_thrust_d_altitude_d_altitude, d2_axial_force_d_altitude_d_altitude,
-        d2_side_force_d_altitude_d_altitude, cos_alpha_times_d_a_z_d_q_1, sin_alpha_times_d_a_x_d_q_1,
-        cos_alpha_times_d_a_z_d_q_2, sin_alpha_times_d_a_x_d_q_2, cos_alpha_times_d_a_z_d_q_3,
-        sin_alpha_times_d_a_x_d_q_3,
     }
 }
 
@@ -630,42 +620,41 @@ fn curvatures_part_1<R: Real>(
     h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
 ) {
     // Derivatives with respect to altitude
-    h.d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // N*s/m^4
-    h.d2_reference_force_d_velocity_d_altitude = p.s * h.d2_dynamic_pressure_d_velocity_d_altitude; // N*s/m^2
-    h.d2_lift_d_velocity_d_altitude = s.d_c_l_d_velocity * s.d_reference_force_d_altitude
+    let d2_dynamic_pressure_d_velocity_d_altitude = x.velocity * s.d_density_d_altitude; // N*s/m^4
+    h.d2_reference_force_d_velocity_d_altitude = p.s * d2_dynamic_pressure_d_velocity_d_altitude; // N*s/m^2
+    let d2_lift_d_velocity_d_altitude = s.d_c_l_d_velocity * s.d_reference_force_d_altitude
         + i.c_l * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
-    h.d2_drag_d_velocity_d_altitude = s.d_c_d_d_velocity * s.d_reference_force_d_altitude
+    let d2_drag_d_velocity_d_altitude = s.d_c_d_d_velocity * s.d_reference_force_d_altitude
         + i.c_d * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
-    h.d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
+    let d2_thrust_d_velocity_d_altitude = s.d_c_t_d_velocity * s.d_reference_force_d_altitude
         + i.c_t * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
-    h.d2_axial_force_d_velocity_d_altitude = i.sin_alpha * h.d2_lift_d_velocity_d_altitude
-        - i.cos_alpha * h.d2_drag_d_velocity_d_altitude
-        + h.d2_thrust_d_velocity_d_altitude; // N*s/m^2
-    h.d2_a_x_d_velocity_d_altitude = h.d2_axial_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
+    let d2_axial_force_d_velocity_d_altitude = i.sin_alpha * d2_lift_d_velocity_d_altitude
+        - i.cos_alpha * d2_drag_d_velocity_d_altitude
+        + d2_thrust_d_velocity_d_altitude; // N*s/m^2
+    h.d2_a_x_d_velocity_d_altitude = d2_axial_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
     h.d2_side_force_d_velocity_d_altitude = s.d_c_y_d_velocity * s.d_reference_force_d_altitude
         + i.c_y * h.d2_reference_force_d_velocity_d_altitude; // N*s/m^2
     h.d2_a_y_d_velocity_d_altitude = h.d2_side_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
     h.d2_normal_force_d_velocity_d_altitude = -(i.cos_alpha
-        * h.d2_lift_d_velocity_d_altitude
-        + i.sin_alpha * h.d2_drag_d_velocity_d_altitude); // N*s/m^2
+        * d2_lift_d_velocity_d_altitude + i.sin_alpha * d2_drag_d_velocity_d_altitude); // N*s/m^2
     h.d2_a_z_d_velocity_d_altitude = h.d2_normal_force_d_velocity_d_altitude * p.inv_m; // 1/s/m
-    h.d2_lift_d_alpha_d_altitude = s.d_c_l_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
-    h.d2_drag_d_alpha_d_altitude = s.d_c_d_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
-    h.d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude = s.d_lift_d_altitude - h.d2_drag_d_alpha_d_altitude;
-    h.d2_axial_force_d_alpha_d_altitude = i.cos_alpha
-        * h.d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude + i.sin_alpha
-        * (s.d_drag_d_altitude + h.d2_lift_d_alpha_d_altitude); // N/rad/m
-    h.d2_a_x_d_alpha_d_altitude = h.d2_axial_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
+    let d2_lift_d_alpha_d_altitude = s.d_c_l_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
+    let d2_drag_d_alpha_d_altitude = s.d_c_d_d_alpha * s.d_reference_force_d_altitude; // N/rad/m
+    let d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude = s.d_lift_d_altitude - d2_drag_d_alpha_d_altitude;
+    let d2_axial_force_d_alpha_d_altitude = i.cos_alpha
+        * d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude + i.sin_alpha
+        * (s.d_drag_d_altitude + d2_lift_d_alpha_d_altitude); // N/rad/m
+    h.d2_a_x_d_alpha_d_altitude = d2_axial_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
     h.d2_normal_force_d_alpha_d_altitude = i.sin_alpha
-        * h.d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude + i.cos_alpha
-        * (-s.d_drag_d_altitude - h.d2_lift_d_alpha_d_altitude); // N/rad/m
+        * d_lift_d_altitude_minus_d2_drag_d_alpha_d_altitude + i.cos_alpha
+        * (-s.d_drag_d_altitude - d2_lift_d_alpha_d_altitude); // N/rad/m
     h.d2_a_z_d_alpha_d_altitude = h.d2_normal_force_d_alpha_d_altitude * p.inv_m; // 1/s^2/rad
-    h.d2_drag_d_beta_d_altitude = p.two_c_d_beta_2 * x.beta * s.d_reference_force_d_altitude; // N/rad/m
-    h.d2_axial_force_d_beta_d_altitude = -i.cos_alpha * h.d2_drag_d_beta_d_altitude; // N/rad/m
-    h.d2_a_x_d_beta_d_altitude = h.d2_axial_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
+    let d2_drag_d_beta_d_altitude = p.two_c_d_beta_2 * x.beta * s.d_reference_force_d_altitude; // N/rad/m
+    let d2_axial_force_d_beta_d_altitude = -i.cos_alpha * d2_drag_d_beta_d_altitude; // N/rad/m
+    h.d2_a_x_d_beta_d_altitude = d2_axial_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
     h.d2_side_force_d_beta_d_altitude = s.d_c_y_d_beta * s.d_reference_force_d_altitude; // N/rad/m
     h.d2_a_y_d_beta_d_altitude = h.d2_side_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
-    h.d2_normal_force_d_beta_d_altitude = -i.sin_alpha * h.d2_drag_d_beta_d_altitude; // N/rad/m
+    h.d2_normal_force_d_beta_d_altitude = -i.sin_alpha * d2_drag_d_beta_d_altitude; // N/rad/m
     h.d2_a_z_d_beta_d_altitude = h.d2_normal_force_d_beta_d_altitude * p.inv_m; // 1/s^2/rad
 
     // Derivatives with respect to q_1
@@ -689,7 +678,13 @@ fn curvatures_part_1<R: Real>(
     h.d2_downward_z_d_q_0_d_q_1 = R::TWO * x.q_0 * h.d_slope_of_downward_z_in_norm_squared_d_q_1
         - R::from_f64(4.0) * h.q_1_inv_norm_squared_2_q_0;
     h.d2_a_z_d_q_0_d_q_1 = p.g * h.d2_downward_z_d_q_0_d_q_1; // m/s^2
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_2<R: Real>(
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to q_2
     h.d_slope_of_downward_x_in_norm_squared_d_q_2 = h.inv_norm_squared_2
         * (R::from_f64(4.0) * i.downward_x * x.q_2 + R::TWO * x.q_0);
@@ -702,14 +697,6 @@ fn curvatures_part_1<R: Real>(
         * (R::from_f64(4.0) * i.downward_y * x.q_2 - R::TWO * x.q_3);
     h.d2_downward_y_d_q_0_d_q_2 = R::TWO * x.q_0 * h.d_slope_of_downward_y_in_norm_squared_d_q_2
         - R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_1;
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_2<R: Real>(
-    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to q_2
     h.d2_a_y_d_q_0_d_q_2 = p.g * h.d2_downward_y_d_q_0_d_q_2; // m/s^2
     h.d_slope_of_downward_z_in_norm_squared_d_q_2 = h.inv_norm_squared_2
         * (R::TWO * x.q_2 + R::from_f64(4.0) * i.downward_z * x.q_2);
@@ -776,7 +763,13 @@ fn curvatures_part_2<R: Real>(
     h.d2_downward_z_d_q_1_d_q_3 = R::from_f64(4.0) * h.q_1_inv_norm_squared_2_q_3
         + R::TWO * x.q_1 * h.d_slope_of_downward_z_in_norm_squared_d_q_3;
     h.d2_a_z_d_q_1_d_q_3 = p.g * h.d2_downward_z_d_q_1_d_q_3; // m/s^2
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_3<R: Real>(
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Derivatives with respect to q_2
     h.d2_downward_x_d_q_2_d_q_2 = R::TWO * s.slope_of_downward_x_in_norm_squared
         + R::from_f64(4.0) * h.q_2_inv_norm_squared_2_q_0
@@ -795,14 +788,6 @@ fn curvatures_part_2<R: Real>(
     // Derivatives with respect to q_3
     h.d2_downward_x_d_q_2_d_q_3 = R::TWO * x.q_2 * h.d_slope_of_downward_x_in_norm_squared_d_q_3
         + R::from_f64(4.0) * h.q_0_inv_norm_squared_2_q_3;
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_3<R: Real>(
-    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Derivatives with respect to q_3
     h.d2_a_x_d_q_2_d_q_3 = p.g * h.d2_downward_x_d_q_2_d_q_3; // m/s^2
     h.d2_downward_y_d_q_2_d_q_3 = R::TWO * i.inv_norm_squared
         - R::from_f64(4.0) * h.q_3_2_inv_norm_squared_2
@@ -826,22 +811,21 @@ fn curvatures_part_3<R: Real>(
     h.d2_a_z_d_q_3_d_q_3 = p.g * h.d2_downward_z_d_q_3_d_q_3; // m/s^2
 
     // Derivatives with respect to altitude
-    h.d2_density_d_altitude_d_altitude = i.density * p.inv_h_s_2; // kg/m^5
-    h.d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
-        * h.d2_density_d_altitude_d_altitude; // N/m^4
-    h.d2_reference_force_d_altitude_d_altitude = p.s * h.d2_dynamic_pressure_d_altitude_d_altitude; // N/m^2
-    h.d2_lift_d_altitude_d_altitude = i.c_l * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_drag_d_altitude_d_altitude = i.c_d * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_thrust_d_altitude_d_altitude = i.c_t * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_axial_force_d_altitude_d_altitude = i.sin_alpha * h.d2_lift_d_altitude_d_altitude
-        - i.cos_alpha * h.d2_drag_d_altitude_d_altitude
-        + h.d2_thrust_d_altitude_d_altitude; // N/m^2
-    h.d2_a_x_d_altitude_d_altitude = h.d2_axial_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
-    h.d2_side_force_d_altitude_d_altitude = i.c_y * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
-    h.d2_a_y_d_altitude_d_altitude = h.d2_side_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
+    let d2_density_d_altitude_d_altitude = i.density * p.inv_h_s_2; // kg/m^5
+    let d2_dynamic_pressure_d_altitude_d_altitude = R::HALF * i.velocity_2
+        * d2_density_d_altitude_d_altitude; // N/m^4
+    h.d2_reference_force_d_altitude_d_altitude = p.s * d2_dynamic_pressure_d_altitude_d_altitude; // N/m^2
+    let d2_lift_d_altitude_d_altitude = i.c_l * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    let d2_drag_d_altitude_d_altitude = i.c_d * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    let d2_thrust_d_altitude_d_altitude = i.c_t * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    let d2_axial_force_d_altitude_d_altitude = i.sin_alpha * d2_lift_d_altitude_d_altitude
+        - i.cos_alpha * d2_drag_d_altitude_d_altitude
+        + d2_thrust_d_altitude_d_altitude; // N/m^2
+    h.d2_a_x_d_altitude_d_altitude = d2_axial_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
+    let d2_side_force_d_altitude_d_altitude = i.c_y * h.d2_reference_force_d_altitude_d_altitude; // N/m^2
+    h.d2_a_y_d_altitude_d_altitude = d2_side_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
     h.d2_normal_force_d_altitude_d_altitude = -(i.cos_alpha
-        * h.d2_lift_d_altitude_d_altitude
-        + i.sin_alpha * h.d2_drag_d_altitude_d_altitude); // N/m^2
+        * d2_lift_d_altitude_d_altitude + i.sin_alpha * d2_drag_d_altitude_d_altitude); // N/m^2
     h.d2_a_z_d_altitude_d_altitude = h.d2_normal_force_d_altitude_d_altitude * p.inv_m; // 1/m/s^2
     h.d2_rolling_moment_d_velocity_d_altitude = p.b
         * (s.d_c_r_d_velocity * s.d_reference_force_d_altitude
@@ -864,9 +848,14 @@ fn curvatures_part_3<R: Real>(
     h.d2_rolling_moment_d_altitude_d_altitude = i.c_r * p.b
         * h.d2_reference_force_d_altitude_d_altitude; // N/m
     h.d2_yawing_moment_d_altitude_d_altitude = i.c_n * p.b
-        * h.d2_reference_force_d_altitude_d_altitude + p.x_cg
-        * h.d2_side_force_d_altitude_d_altitude; // N/m
+        * h.d2_reference_force_d_altitude_d_altitude + p.x_cg * d2_side_force_d_altitude_d_altitude; // N/m
+}
 
+/// Fills a part of [`Curvatures`].
+#[inline(always)]
+fn curvatures_part_4<R: Real>(
+    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
+) {
     // Further values
     h.slope_of_c_r_in_p_hat_inv_velocity_2 = s.slope_of_c_r_in_p_hat * s.inv_velocity_2;
     h.d2_yawing_moment_d_velocity_d_roll_rate_over_b_2_c_n_p_hat = R::HALF * s.d_reference_force_d_velocity
@@ -876,27 +865,19 @@ fn curvatures_part_3<R: Real>(
     h.downward_x_sin_alpha = i.downward_x * i.sin_alpha;
     h.downward_x_cos_alpha_plus_downward_z_sin_alpha = s.downward_x_cos_alpha + s.downward_z_sin_alpha;
     h.a_x_minus_d_a_z_d_alpha = i.a_x - s.d_a_z_d_alpha;
-    h.cos_alpha_times_d_a_z_d_q_1 = i.cos_alpha * s.d_a_z_d_q_1;
-}
-
-/// Fills a part of [`Curvatures`].
-#[inline(always)]
-fn curvatures_part_4<R: Real>(
-    h: &mut Curvatures<R>, x: &State<R>, p: &Prepared<R>, i: &Intermediates<R>, s: &Slopes<R>,
-) {
-    // Further values
-    h.sin_alpha_times_d_a_x_d_q_1 = i.sin_alpha * s.d_a_x_d_q_1;
-    h.cos_alpha_times_d_a_z_d_q_1_minus_sin_alpha_times_d_a_x_d_q_1 = h.cos_alpha_times_d_a_z_d_q_1
-        - h.sin_alpha_times_d_a_x_d_q_1;
+    let cos_alpha_times_d_a_z_d_q_1 = i.cos_alpha * s.d_a_z_d_q_1;
+    let sin_alpha_times_d_a_x_d_q_1 = i.sin_alpha * s.d_a_x_d_q_1;
+    h.cos_alpha_times_d_a_z_d_q_1_minus_sin_alpha_times_d_a_x_d_q_1 = cos_alpha_times_d_a_z_d_q_1
+        - sin_alpha_times_d_a_x_d_q_1;
     h.cos_beta_times_d_a_y_d_q_1 = i.cos_beta * s.d_a_y_d_q_1;
     h.cos_alpha_times_d2_a_x_d_q_0_d_q_1 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_1;
     h.sin_alpha_times_d2_a_z_d_q_0_d_q_1 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_1;
     h.cos_alpha_times_d2_a_x_d_q_1_d_q_1 = i.cos_alpha * h.d2_a_x_d_q_1_d_q_1;
     h.sin_alpha_times_d2_a_z_d_q_1_d_q_1 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_1;
-    h.cos_alpha_times_d_a_z_d_q_2 = i.cos_alpha * s.d_a_z_d_q_2;
-    h.sin_alpha_times_d_a_x_d_q_2 = i.sin_alpha * s.d_a_x_d_q_2;
-    h.cos_alpha_times_d_a_z_d_q_2_minus_sin_alpha_times_d_a_x_d_q_2 = h.cos_alpha_times_d_a_z_d_q_2
-        - h.sin_alpha_times_d_a_x_d_q_2;
+    let cos_alpha_times_d_a_z_d_q_2 = i.cos_alpha * s.d_a_z_d_q_2;
+    let sin_alpha_times_d_a_x_d_q_2 = i.sin_alpha * s.d_a_x_d_q_2;
+    h.cos_alpha_times_d_a_z_d_q_2_minus_sin_alpha_times_d_a_x_d_q_2 = cos_alpha_times_d_a_z_d_q_2
+        - sin_alpha_times_d_a_x_d_q_2;
     h.cos_beta_times_d_a_y_d_q_2 = i.cos_beta * s.d_a_y_d_q_2;
     h.cos_alpha_times_d2_a_x_d_q_0_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_2;
     h.sin_alpha_times_d2_a_z_d_q_0_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_2;
@@ -904,10 +885,10 @@ fn curvatures_part_4<R: Real>(
     h.sin_alpha_times_d2_a_z_d_q_1_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_1_d_q_2;
     h.cos_alpha_times_d2_a_x_d_q_2_d_q_2 = i.cos_alpha * h.d2_a_x_d_q_2_d_q_2;
     h.sin_alpha_times_d2_a_z_d_q_2_d_q_2 = i.sin_alpha * h.d2_a_z_d_q_2_d_q_2;
-    h.cos_alpha_times_d_a_z_d_q_3 = i.cos_alpha * s.d_a_z_d_q_3;
-    h.sin_alpha_times_d_a_x_d_q_3 = i.sin_alpha * s.d_a_x_d_q_3;
-    h.cos_alpha_times_d_a_z_d_q_3_minus_sin_alpha_times_d_a_x_d_q_3 = h.cos_alpha_times_d_a_z_d_q_3
-        - h.sin_alpha_times_d_a_x_d_q_3;
+    let cos_alpha_times_d_a_z_d_q_3 = i.cos_alpha * s.d_a_z_d_q_3;
+    let sin_alpha_times_d_a_x_d_q_3 = i.sin_alpha * s.d_a_x_d_q_3;
+    h.cos_alpha_times_d_a_z_d_q_3_minus_sin_alpha_times_d_a_x_d_q_3 = cos_alpha_times_d_a_z_d_q_3
+        - sin_alpha_times_d_a_x_d_q_3;
     h.cos_beta_times_d_a_y_d_q_3 = i.cos_beta * s.d_a_y_d_q_3;
     h.cos_alpha_times_d2_a_x_d_q_0_d_q_3 = i.cos_alpha * h.d2_a_x_d_q_0_d_q_3;
     h.sin_alpha_times_d2_a_z_d_q_0_d_q_3 = i.sin_alpha * h.d2_a_z_d_q_0_d_q_3;
@@ -931,16 +912,16 @@ fn curvatures_part_4<R: Real>(
     h.yaw_rate_sin_alpha = x.yaw_rate * i.sin_alpha;
     h.roll_rate_cos_alpha_plus_yaw_rate_sin_alpha = h.roll_rate_cos_alpha + h.yaw_rate_sin_alpha;
     h.one_plus_sin_beta_2_inv_cos_beta_2 = R::ONE + s.sin_beta_2 * s.inv_cos_beta_2;
-    h.sin_alpha_times_d_a_x_d_q_1_minus_cos_alpha_times_d_a_z_d_q_1 = h.sin_alpha_times_d_a_x_d_q_1
-        - h.cos_alpha_times_d_a_z_d_q_1;
+    h.sin_alpha_times_d_a_x_d_q_1_minus_cos_alpha_times_d_a_z_d_q_1 = sin_alpha_times_d_a_x_d_q_1
+        - cos_alpha_times_d_a_z_d_q_1;
     h.cos_alpha_times_d_a_x_d_q_1_plus_sin_alpha_times_d_a_z_d_q_1 = s.cos_alpha_times_d_a_x_d_q_1
         + s.sin_alpha_times_d_a_z_d_q_1;
-    h.sin_alpha_times_d_a_x_d_q_2_minus_cos_alpha_times_d_a_z_d_q_2 = h.sin_alpha_times_d_a_x_d_q_2
-        - h.cos_alpha_times_d_a_z_d_q_2;
+    h.sin_alpha_times_d_a_x_d_q_2_minus_cos_alpha_times_d_a_z_d_q_2 = sin_alpha_times_d_a_x_d_q_2
+        - cos_alpha_times_d_a_z_d_q_2;
     h.cos_alpha_times_d_a_x_d_q_2_plus_sin_alpha_times_d_a_z_d_q_2 = s.cos_alpha_times_d_a_x_d_q_2
         + s.sin_alpha_times_d_a_z_d_q_2;
-    h.sin_alpha_times_d_a_x_d_q_3_minus_cos_alpha_times_d_a_z_d_q_3 = h.sin_alpha_times_d_a_x_d_q_3
-        - h.cos_alpha_times_d_a_z_d_q_3;
+    h.sin_alpha_times_d_a_x_d_q_3_minus_cos_alpha_times_d_a_z_d_q_3 = sin_alpha_times_d_a_x_d_q_3
+        - cos_alpha_times_d_a_z_d_q_3;
     h.cos_alpha_times_d_a_x_d_q_3_plus_sin_alpha_times_d_a_z_d_q_3 = s.cos_alpha_times_d_a_x_d_q_3
         + s.sin_alpha_times_d_a_z_d_q_3;
     h.minus_two_k_norm_q_1 = p.minus_two_k_norm * x.q_1;

@@ -3,7 +3,7 @@
 //! What the table says beside its numbers.
 
 use super::nominal::{UNIT_SYSTEM, VALIDITY};
-use ahv_core::{Entry, Interval, Rule, Sign, Table, Term};
+use ahv_core::{Entry, Fit, FitVariable, Interval, Rule, Sign, Table, Term};
 
 /// Entries, choices, validity box and rules of the table.
 pub const TABLE: Table = Table {
@@ -94,6 +94,95 @@ pub const TABLE: Table = Table {
         Interval::new("delta_a", "rad", VALIDITY.delta_a, &["delta_a"]),
         Interval::new("delta_r", "rad", VALIDITY.delta_r, &["delta_r"]),
         Interval::new("turn_rate", "rad/s", VALIDITY.turn_rate, &["turn_rate"]),
+    ],
+    fits: &[
+        Fit::new(
+            "C_L",
+            "1",
+            "lift coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::unbounded("mach", "1"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_D",
+            "1",
+            "drag coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::new("beta", "rad", "beta"),
+                FitVariable::unbounded("mach", "1"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::new("delta_a", "rad", "delta_a"),
+                FitVariable::new("delta_r", "rad", "delta_r"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_Y",
+            "1",
+            "side-force coefficient",
+            &[
+                FitVariable::new("beta", "rad", "beta"),
+                FitVariable::unbounded("mach", "1"),
+                FitVariable::new("delta_a", "rad", "delta_a"),
+                FitVariable::new("delta_r", "rad", "delta_r"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_T",
+            "1",
+            "thrust coefficient",
+            &[
+                FitVariable::new("throttle", "1", "throttle"),
+                FitVariable::unbounded("mach", "1"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_R",
+            "1",
+            "rolling-moment coefficient",
+            &[
+                FitVariable::new("beta", "rad", "beta"),
+                FitVariable::unbounded("mach", "1"),
+                FitVariable::new("delta_a", "rad", "delta_a"),
+                FitVariable::new("delta_r", "rad", "delta_r"),
+                FitVariable::unbounded("p_hat", "rad"),
+                FitVariable::unbounded("r_hat", "rad"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_M",
+            "1",
+            "pitching-moment coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::unbounded("mach", "1"),
+                FitVariable::new("delta_e", "rad", "delta_e"),
+                FitVariable::unbounded("q_hat", "rad"),
+            ],
+            &[],
+        ),
+        Fit::new(
+            "C_N",
+            "1",
+            "yawing-moment coefficient",
+            &[
+                FitVariable::new("beta", "rad", "beta"),
+                FitVariable::unbounded("mach", "1"),
+                FitVariable::new("delta_a", "rad", "delta_a"),
+                FitVariable::new("delta_r", "rad", "delta_r"),
+                FitVariable::unbounded("p_hat", "rad"),
+                FitVariable::unbounded("r_hat", "rad"),
+            ],
+            &[],
+        ),
     ],
     rules: &[
         Rule::new("positive", "`m` (mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),

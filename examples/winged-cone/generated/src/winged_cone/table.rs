@@ -3,7 +3,7 @@
 //! What the table says beside its numbers.
 
 use super::nominal::{UNIT_SYSTEM, VALIDITY};
-use ahv_core::{Entry, Interval, Rule, Sign, Table, Term};
+use ahv_core::{Entry, Fit, FitVariable, Interval, Rule, Sign, Table, Term};
 
 /// Entries, choices, validity box and rules of the table.
 pub const TABLE: Table = Table {
@@ -48,6 +48,23 @@ pub const TABLE: Table = Table {
         Interval::new("beta_rate", "1/s", VALIDITY.beta_rate, &["beta_rate"]),
         Interval::new("beta_command", "1", VALIDITY.beta_command, &["beta_command"]),
         Interval::new("delta_e", "rad", VALIDITY.delta_e, &["delta_e"]),
+    ],
+    fits: &[
+        Fit::new("C_L", "1", "lift coefficient", &[FitVariable::new("alpha", "rad", "alpha")], &[]),
+        Fit::new("C_D", "1", "drag coefficient", &[FitVariable::new("alpha", "rad", "alpha")], &[]),
+        Fit::new("C_T", "1", "thrust coefficient below beta = 1", &[FitVariable::new("beta", "1", "beta")], &[]),
+        Fit::new("C_T_high", "1", "thrust coefficient from beta = 1 on", &[FitVariable::new("beta", "1", "beta")], &[]),
+        Fit::new(
+            "C_M",
+            "1",
+            "pitching-moment coefficient",
+            &[
+                FitVariable::new("alpha", "rad", "alpha"),
+                FitVariable::unbounded("q_hat", "rad"),
+                FitVariable::unbounded("tail", "rad"),
+            ],
+            &[],
+        ),
     ],
     rules: &[
         Rule::new("positive", "`m` (vehicle mass) must be positive", Sign::Positive, &[Term::new(1.0, &["m"])]),

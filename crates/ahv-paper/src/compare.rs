@@ -1,0 +1,141 @@
+//! The first-principles model beside the published curve fits of the COM: axial force, normal force and pitching moment.
+//!
+//! Bookkeepings of thrust differ, so lift, drag and thrust are compared as what they add up to in body axes.
+
+use ahv_core::{GeneratedModel, Vector};
+use ahv_fpm::Fault;
+use ahv_models::com;
+
+use crate::reproduce::printed::TABLE_2;
+
+/// Angles of attack, in deg; elevator, in deg; fuel equivalence ratios: the box of the comparison.
+pub const ALPHAS: [f64; 7] = [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+/// Elevator deflections, in deg.
+pub const ELEVATORS: [f64; 4] = [0.0, 5.0, 10.0, 15.0];
+/// Fuel equivalence ratios.
+pub const RATIOS: [f64; 5] = [0.1, 0.2, 0.3, 0.4, 0.5];
+
+/// What is compared: names and units.
+pub const COMPARED: [(&str, &str); 3] = [
+    ("axial force", "lb/ft"),
+    ("normal force", "lb/ft"),
+    ("pitching moment", "lb"),
+];
+
+/// A point of the box, with what is compared of both models.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Point {
+    /// Angle of attack, in deg.
+    pub alpha_deg: f64,
+    /// Elevator, in deg.
+    pub delta_e_deg: f64,
+    /// Fuel equivalence ratio.
+    pub phi: f64,
+    /// Of the first-principles model, in the order of [`COMPARED`].
+    pub fpm: [f64; 3],
+    /// Of the COM.
+    pub com: [f64; 3],
+}
+
+/// How far one quantity is off over the box.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Deviation {
+    /// Root mean square of the difference.
+    pub difference: f64,
+    /// Root mean square of the COM's.
+    pub size: f64,
+    /// Mean of the difference.
+    pub mean: f64,
+    /// Root mean square of the difference less its mean: what is left if only a constant is off.
+    pub rest: f64,
+    /// Mean slope by α, φ and δe of the first-principles model: by a change over the box.
+    pub fpm_changes: [f64; 3],
+    /// The same of the COM.
+    pub com_changes: [f64; 3],
+}
+
+/// Both models over the box, at velocity and altitude of Table 2, rigid.
+///
+/// # Errors
+///
+/// [`Fault`] where the first-principles model has no flow.
+pub fn points() -> Result<Vec<Point>, Fault> {
+    let fpm = ahv_fpm::Model::new(&ahv_fpm::NOMINAL);
+    let parameters = com::NOMINAL;
+    let com_model = <com::Model<f64> as GeneratedModel>::generic(&parameters);
+    let mut points = Vec::new();
+    for phi in RATIOS {
+        for delta_e_deg in ELEVATORS {
+            for alpha_deg in ALPHAS {
+                let (alpha, delta_e) = (alpha_deg.to_radians(), delta_e_deg.to_radians());
+                let rest = ahv_fpm::State::splat(0.0);
+                let (velocity, altitude) = (TABLE_2.velocity, TABLE_2.altitude);
+                let x = ahv_fpm::State {
+                    velocity,
+                    altitude,
+                    alpha,
+                    ..rest
+                };
+                let total = fpm.forces(&x, &ahv_fpm::Input { phi, delta_e })?.total();
+                let x = com::State {
+                    velocity,
+                    altitude,
+                    alpha,
+                    ..com::State::splat(0.0)
+                };
+                let it = com::Model::outputs(&com_model, &x, &com::Input { phi, delta_e });
+                let (sin, cos) = alpha.sin_cos();
+                let axial = it.thrust - it.drag * cos + it.lift * sin;
+                let normal = it.lift * cos + it.drag * sin;
+                points.push(Point {
+                    alpha_deg,
+                    delta_e_deg,
+                    phi,
+                    fpm: [total.axial, total.normal, total.moment],
+                    com: [axial, normal, it.pitching_moment],
+                });
+            }
+        }
+    }
+    Ok(points)
+}
+
+/// The deviations over some points, in the order of [`COMPARED`].
+pub fn deviations(points: &[Point]) -> [Deviation; 3] {
+    std::array::from_fn(|index| {
+        let count = points.len() as f64;
+        let differences = || points.iter().map(|it| it.fpm[index] - it.com[index]);
+        let mean = differences().sum::<f64>() / count;
+        let rms = |values: &mut dyn Iterator<Item = f64>| {
+            (values.map(|it| it * it).sum::<f64>() / count).sqrt()
+        };
+        Deviation {
+            difference: rms(&mut differences()),
+            size: rms(&mut points.iter().map(|it| it.com[index])),
+            mean,
+            rest: rms(&mut differences().map(|it| it - mean)),
+            fpm_changes: changes(points, |it| it.fpm[index]),
+            com_changes: changes(points, |it| it.com[index]),
+        }
+    })
+}
+
+/// By how much a value changes over the box with α, φ and δe, by a straight line each, the others held.
+fn changes(points: &[Point], value: impl Fn(&Point) -> f64) -> [f64; 3] {
+    let variables: [fn(&Point) -> f64; 3] = [|it| it.alpha_deg, |it| it.phi, |it| it.delta_e_deg];
+    // The grid is full, so that its variables are uncorrelated.
+    variables.map(|variable| {
+        let count = points.len() as f64;
+        let middle = points.iter().map(variable).sum::<f64>() / count;
+        let away = |it: &Point| variable(it) - middle;
+        let [low, high] = points
+            .iter()
+            .map(variable)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], it| {
+                [low.min(it), high.max(it)]
+            });
+        let square: f64 = points.iter().map(|it| away(it) * away(it)).sum();
+        let product: f64 = points.iter().map(|it| away(it) * value(it)).sum();
+        product / square * (high - low)
+    })
+}

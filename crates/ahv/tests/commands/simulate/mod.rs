@@ -1,0 +1,7 @@
+//! `ahv simulate`.
+
+mod bench;
+mod conditions;
+mod faults;
+mod runs;
+mod si;
