@@ -41,6 +41,7 @@ crate-type = ["cdylib"]
 [dependencies]
 ahv-python = {{ path = {python}, default-features = false }}
 loaded-models = {{ path = "models" }}
+pyo3 = {{ version = "0.30", features = ["abi3-py311"] }}
 
 [profile.release]
 codegen-units = 8
