@@ -48,8 +48,8 @@ impl Noise {
     #[inline(always)]
     fn fill(&mut self, numbers: &mut [Packed; MOST_NORMALS], step: u64) {
         match self {
-            Self::Double(channels) => fill(numbers, channels, step, draw_double, |number| number),
-            Self::Single(channels) => fill(numbers, channels, step, draw_single, f64::from),
+            Self::Double(channels) => fill(numbers, channels, step, |number| number),
+            Self::Single(channels) => fill(numbers, channels, step, f64::from),
         }
     }
 }
@@ -59,38 +59,13 @@ fn fill<T: Precision>(
     numbers: &mut [Packed; MOST_NORMALS],
     channels: &mut [Option<NormalLanes<T, LANES>>],
     step: u64,
-    draw: fn(&mut NormalLanes<T, LANES>, u64),
     widened: impl Fn(T) -> f64,
 ) {
     for (place, channel) in numbers.iter_mut().zip(channels) {
         if let Some(channel) = channel {
-            *place = channel.normal_or(step, draw).map(&widened);
+            *place = channel.normal(step).map(&widened);
         }
     }
-}
-
-/// Draws numbers with the instructions of the machine.
-struct Draw<'c, T>(&'c mut NormalLanes<T, LANES>, u64);
-
-impl<T: Precision> pulp::WithSimd for Draw<'_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<V: pulp::Simd>(self, _: V) {
-        self.0.draw(self.1);
-    }
-}
-
-// Functions that are not generic: loops over members share them, and they are compiled here, once.
-
-#[inline(never)]
-fn draw_double(channel: &mut NormalLanes<f64, LANES>, step: u64) {
-    pulp::Arch::new().dispatch(Draw(channel, step));
-}
-
-#[inline(never)]
-fn draw_single(channel: &mut NormalLanes<f32, LANES>, step: u64) {
-    pulp::Arch::new().dispatch(Draw(channel, step));
 }
 
 /// What members fly.

@@ -49,29 +49,16 @@ impl<T: Precision, const N: usize> NormalLanes<T, N> {
     /// The numbers of this step.
     #[inline(always)]
     pub fn normal(&mut self, step: u64) -> Lanes<T, N> {
-        self.normal_or(step, Self::draw)
-    }
-
-    /// As [`Self::normal`], where `draw` calls [`Self::draw`]: once for several steps, so that loops over steps may share it as
-    /// a function of its own.
-    #[inline(always)]
-    pub fn normal_or(&mut self, step: u64, draw: impl FnOnce(&mut Self, u64)) -> Lanes<T, N> {
-        if self.block != Some(step / T::PER_BLOCK) {
-            draw(self, step);
+        let block = step / T::PER_BLOCK;
+        if self.block != Some(block) {
+            T::fill(&mut self.numbers.0, &blocks(&self.key, block));
+            self.block = Some(block);
         }
         let place = (step % T::PER_BLOCK) as usize;
         self.numbers
             .0
             .get(place)
             .map_or(Lanes::ZERO, |&numbers| Lanes(numbers))
-    }
-
-    /// Draws the numbers of this step and of its neighbours.
-    #[inline(always)]
-    pub fn draw(&mut self, step: u64) {
-        let block = step / T::PER_BLOCK;
-        T::fill(&mut self.numbers.0, &blocks(&self.key, block));
-        self.block = Some(block);
     }
 }
 
