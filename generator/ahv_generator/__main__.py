@@ -1,6 +1,7 @@
 """Command line: `python -m ahv_generator derive --out DIR TABLE...`, `... describe TABLE` and `... evaluate`.
 
-`describe` prints what a table may hold, which is its IR without models. `evaluate` writes CasADi's own values of a model at points that the oracle drew.
+`describe` prints what a table may hold, which is its IR without models. `evaluate` writes CasADi's own
+values of a model at points that the oracle drew.
 
 Exit codes: 0 done, 1 it cannot be done (standard error says why), 2 a table is at fault (its diagnostics stand on
 standard output as JSON).

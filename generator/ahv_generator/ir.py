@@ -157,7 +157,7 @@ def _units(table: Table, parts: Iterable[Part]) -> dict[str, object]:
     """Every unit of the document, with what it is in the other system."""
     other = units.other(table.units)
     fits = table.schema.quantities
-    declared = [*table.schema.validity, *fits, *(v for q in fits for v in q.depends_on)]
+    declared: list[Variable | Quantity] = [*table.schema.validity, *fits, *(v for q in fits for v in q.depends_on)]
     used = {p.unit for p in table.parameters} | {units.converted(it.unit, table.units) for it in declared}
     used = used.union(*(p.units for p in parts))
     factors = {unit: _Line([units.converted(unit, other), units.conversion(unit, other)]) for unit in sorted(used)}
