@@ -135,11 +135,7 @@ fn new_repository(place: &Path, answers: &Answers) -> Result<(), String> {
 }
 
 /// An example that is checked in with its package builds as it is, and answers as published.
-fn checked_in(
-    example: &str,
-    questions: &str,
-    answers: &Answers,
-) -> Result<(), String> {
+fn checked_in(example: &str, questions: &str, answers: &Answers) -> Result<(), String> {
     let folder = shell::root().join("examples").join(example);
     println!("examples/{example}");
     build(&folder)?;

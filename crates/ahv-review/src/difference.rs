@@ -192,8 +192,9 @@ fn leaves(contents: &Contents<'_>) -> BTreeMap<String, String> {
             path.push(key.to_owned());
             match item.as_table_like() {
                 _ if numbers.contains(path) => {}
-                Some(inner) => collect(inner, path, numbers, found),
-                None => {
+                Some(inner) if !inner.is_empty() => collect(inner, path, numbers, found),
+                // An empty section, such as a set that replaces nothing, says something, too.
+                _ => {
                     let keys: Vec<String> = path.iter().map(|key| quoted(key)).collect();
                     let text = item.clone().into_value().map(|value| {
                         let value = value.decorated("", "");

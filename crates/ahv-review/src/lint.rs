@@ -60,7 +60,7 @@ pub const LINTS: [Lint; 11] = [
     lint_of(
         "no-uncertainty",
         Severity::Warning,
-        "a number that is unverified or assumed has the uncertainty 0",
+        "a number that is unverified has the uncertainty 0",
     ),
     lint_of(
         "unused-source",

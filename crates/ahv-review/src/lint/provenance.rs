@@ -19,12 +19,9 @@ pub(super) fn find(findings: &mut Findings<'_>, contents: &Contents<'_>) {
             let path = [path.as_slice(), &["status"]].concat();
             findings.add("no-source", &path, Part::Value, message, help);
         }
-        let is_open = ["unverified", "assumed"].contains(&entry.status);
-        if is_open && entry.uncertainty == 0.0 {
-            let message = format!(
-                "`{}` is {}, and its uncertainty is 0",
-                entry.key, entry.status
-            );
+        // What is assumed may be meant exactly.
+        if entry.status == "unverified" && entry.uncertainty == 0.0 {
+            let message = format!("`{}` is unverified, and its uncertainty is 0", entry.key);
             let help = "give the `uncertainty` that such a number has";
             findings.add("no-uncertainty", &path, Part::Key, message, help);
         }
