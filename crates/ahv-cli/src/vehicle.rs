@@ -178,6 +178,7 @@ pub(crate) struct PointJson {
 
 impl VehicleArgs {
     /// A model with a table, and all else as that has it.
+    #[cfg(feature = "generate")]
     pub(crate) fn of(model: &dyn AnyModel, table: &Path) -> Self {
         Self {
             model: model.name().to_owned(),
