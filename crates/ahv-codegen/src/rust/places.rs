@@ -125,7 +125,11 @@ mod tests {
             unit: String::new(),
         };
         let body = Body {
-            statements: vec![bind("a", minus("z")), bind("b", minus("a"))],
+            statements: vec![
+                Statement::Section("Rates".to_owned()),
+                bind("a", minus("z")),
+                bind("b", minus("a")),
+            ],
             results: vec![name("a"), minus("a"), name("b"), name("a")],
             numbered: Vec::new(),
         };
@@ -133,6 +137,7 @@ mod tests {
         let printed = placed(&body, &places).statements;
         let printed: Vec<String> = printed.iter().map(statement).collect();
         let expected = [
+            "__section!(\"Rates\");",
             "r.u.v = -z;",
             "r.v.v = -r.u.v;",
             "__section!(\"\");",

@@ -205,8 +205,9 @@ fn a_table_in_si_is_the_same_vehicle() {
 
 /// Text of com.toml, what takes its place, and words of the message; `\n` is an end of a line.
 const BAD: &str = r#"
-"alpha" = { value = 4.6773 | "alhpa" = { value = 4.6773 | :1: the models have no coefficient of `alhpa` in `[C_L]` | `ahv generate`; did you mean `alpha`? [needs-generation]
-[T]\n | [T]\n"0" = { value = 1.0, unit = "lb/ft" }\n | no coefficient of `0` in `[T]` | phi*alpha^3` | `1` [needs-generation]
+"alpha" = { value = 4.6773 | "alhpa" = { value = 4.6773 | :1: `alhpa` is not a variable of this quantity; did you mean `alpha`? | [monomial]
+[T]\n | [T]\n"0" = { value = 1.0, unit = "lb/ft" }\n | `0` is not a variable of this quantity; known here: `phi`, `alpha` [monomial]
+"alpha" = { value = 4.6773 | "alpha^2" = { value = 4.6773 | no coefficient of `alpha^2` in `[C_L]` | `ahv generate` | [needs-generation]
 "alpha" = { value = 4.6773, unit = "1/rad" | "alpha^1" = { value = 9.9, unit = "1/rad" }\n"alpha" = { value = 4.6773, unit = "1/rad" | `alpha` is the same monomial as `alpha^1` [duplicate-monomial]
 "alpha" = { value = 4.6773, unit = "1/rad" | "alpha" = { value = 4.6773, unit = "1/rad", uncertanty = 0.01 | unknown key `uncertanty`; did you mean `uncertainty`? [unknown-key]
 S = { value = 17.0, unit = "ft" | S = { value = 5.18, unit = "m" | `m` measures the right thing, but the table is in ft-slug-s-rad | write the value in `ft` [unit]
@@ -223,8 +224,8 @@ min = 0.05, max = 1.2 | min = 1.2, max = 1.2 | `min` must be below `max` [range]
 [sets."section5.3"] | [sets."section5.3".vehicle]\nmass = { value = 1.0, unit = "slug/ft" } | `[vehicle]` of the table has no `mass` to replace | [nothing-to-replace]
 [choices] | [choices | table.toml: | [unreadable]
 unit = "slug/ft" } | unit = "slug/ft", } | :38: a comma at the end of an inline table: this is TOML 1.1 | [unreadable]
-"alpha" = { value = 4.6773 | "eta_18446744073709551615" = { value = 4.6773 | no coefficient of `eta_18446744073709551615`
-"alpha" = { value = 4.6773 | "al\u001b\u202epha" = { value = 4.6773 | no coefficient of `al\u{1b}\u{202e}pha`
+"alpha" = { value = 4.6773 | "eta_18446744073709551615" = { value = 4.6773 | `eta_18446744073709551615` is not a variable
+"alpha" = { value = 4.6773 | "al\u001b\u202epha" = { value = 4.6773 | `al\u{1b}\u{202e}pha` is not a variable
 "#;
 
 #[test]
