@@ -167,7 +167,7 @@ fn watching_generates_on_save() {
     );
 
     scratch.write(table, text.replace("value = 0.72,", "value = -1.0,"));
-    said(&err, "flexible_mode.toml:30:18]", 1);
+    said(&err, "flexible_mode.toml:29:18]", 1);
     scratch.write(table, text.replace("value = 0.72,", "value = 0.74,"));
     said(&out, "code: 1 file, +1 −1\n", 4);
     said(&err, "watching generator/tables", 6);
