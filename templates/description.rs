@@ -42,6 +42,9 @@ impl GeneratedModel for Model<f64> {
         ("{{ name }}", {{ deviation|number }}),
 {%- endfor %}
     ];
+{%- if has_boundaries %}
+    const BOUNDARIES: &'static [&'static str] = <Boundaries<f64> as ahv_core::Vector<f64>>::NAMES;
+{%- endif %}
 
     type ParametersOf<T: ahv_core::Component> = Parameters<T>;
     type StateOf<T: ahv_core::Component> = State<T>;
@@ -74,6 +77,12 @@ impl GeneratedModel for Model<f64> {
         Some(visitor.visit::<{{ coloured }}>())
 {%- endif %}
     }
+{%- if has_boundaries %}
+
+    fn boundary(&self, index: usize, x: &State<f64>, u: &Input<f64>) -> f64 {
+        ahv_core::Vector::get(&boundaries(x, u, &self.prepared), index).unwrap_or(f64::NAN)
+    }
+{%- endif %}
 
     fn parameter_jacobian(&self, x: &State<f64>, u: &Input<f64>) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)

@@ -3,6 +3,7 @@
 //! [`AnyModel`] says what [`GeneratedModel`] says, and does what this crate does, with vectors that are slices in the order of
 //! their names. It is compiled once for a model; what is written over it is compiled once for all.
 
+mod adaptive;
 mod model;
 mod rows;
 mod steppers;
@@ -20,6 +21,7 @@ use crate::ordered::Control;
 use crate::trim::{SteadyState, Trim, TrimError};
 
 pub use crate::values::{values, vector};
+pub use adaptive::{Fly, Passage};
 pub use steppers::{Advance, DeterministicScheme, StepperError};
 
 /// Names and units of the components of a vector.
@@ -205,6 +207,18 @@ pub trait AnyModel: Send + Sync {
         p: &[f64],
         stepper: DeterministicScheme,
     ) -> Result<Advance, StepperError>;
+    /// A single flight without noise, with steps as long as `tolerance` allows: the error of a step, of each state in units of its value
+    /// and of the width of its validity box. Boundaries of the drift are located, and no step holds one.
+    ///
+    /// # Errors
+    ///
+    /// [`StepperError::NoErrorEstimate`]
+    fn adaptive(
+        &self,
+        p: &[f64],
+        stepper: DeterministicScheme,
+        tolerance: f64,
+    ) -> Result<Fly, StepperError>;
     /// The steps of a single flight with the noise of `seed`: that of member 0 of an ensemble.
     ///
     /// # Errors

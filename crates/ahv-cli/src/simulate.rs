@@ -6,7 +6,7 @@ mod report;
 
 use std::path::PathBuf;
 
-use ahv_analysis::erased::{Advance, DeterministicScheme, StepperError};
+use ahv_analysis::erased::{DeterministicScheme, StepperError};
 use ahv_analysis::monte_carlo::Scheme;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -16,7 +16,7 @@ use crate::flight_condition::FlightCondition;
 use crate::names;
 use crate::registry::needs_noise;
 use crate::vehicle::VehicleArgs;
-use flight::Flight;
+use flight::{Flight, Motion};
 use grid::grid;
 
 /// Simulates a model with held inputs and writes the trajectory as CSV.
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
     t_end: f64,
 
-    /// Step size in s
+    /// Step size in s; with --tolerance the interval of the rows, and no step is longer
     #[arg(long, value_name = "S", value_parser = crate::number::positive, allow_negative_numbers = true)]
     dt: f64,
 
@@ -41,9 +41,14 @@ pub(crate) struct Arguments {
     #[arg(long)]
     stochastic: bool,
 
-    /// Stepper [default: rk4 without noise, euler-maruyama with it]. With noise, the schemes of `ahv montecarlo`; heun is one of both
+    /// Stepper [default: rk4 without noise, dormand-prince853 with --tolerance, euler-maruyama with noise]. With noise, the schemes of `ahv montecarlo`; heun is one of both
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(scheme_names()))]
     scheme: Option<String>,
+
+    /// Take steps as long as their error allows: of each state at most this part of its value and of the width of its validity
+    /// box. Boundaries where the drift has a kink or jumps are located and told. Without noise
+    #[arg(long, value_name = "PART", value_parser = tolerance, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
 
     /// Seed of the noise: the same seed gives the same numbers on every machine
     #[arg(long, default_value_t = 0)]
@@ -64,6 +69,14 @@ pub(crate) struct Arguments {
     /// Print the outcome as JSON, in the units of the CSV file
     #[arg(long)]
     json: bool,
+}
+
+/// Reads a tolerance: rounding hides smaller ones, and greater ones are none.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (1e-14..=0.1).contains(&value) => Ok(value),
+        _ => Err("is not a number from 1e-14 to 0.1".to_owned()),
+    }
 }
 
 /// The steppers without noise, then the schemes of `ahv montecarlo`, each name once.
@@ -88,12 +101,12 @@ fn steps<T: Copy>(
     all: &[T],
     name: fn(T) -> &'static str,
     flight: &str,
-    make: impl Fn(T) -> Result<Advance, StepperError>,
-) -> Result<Advance, Failure> {
+    make: impl Fn(T) -> Result<Motion, StepperError>,
+) -> Result<Motion, Failure> {
     let why = match all.iter().find(|&&it| name(it) == asked) {
         None => format!("{asked} is not for a flight {flight}"),
         Some(&it) => match make(it) {
-            Ok(advance) => return Ok(advance),
+            Ok(motion) => return Ok(motion),
             Err(error) => error.to_string(),
         },
     };
@@ -116,18 +129,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (model, parameters) = (vehicle.model, &vehicle.parameters);
     let asked = arguments.scheme.as_deref();
     let noisy = arguments.stochastic || model.coloured_states() > 0;
-    let default = match noisy {
-        true => Scheme::EulerMaruyama.name(),
-        false => DeterministicScheme::Rk4.name(),
+    if let (true, Some(_)) = (noisy, arguments.tolerance) {
+        return Err(Failure::Request(
+            "--tolerance: a flight with noise has steps of fixed length".to_owned(),
+        ));
+    }
+    let default = match (noisy, arguments.tolerance) {
+        (true, _) => Scheme::EulerMaruyama.name(),
+        (false, None) => DeterministicScheme::Rk4.name(),
+        (false, Some(_)) => DeterministicScheme::DormandPrince853.name(),
     };
     let asked = asked.unwrap_or(default);
-    let advance = if noisy {
+    let motion = if noisy {
         needs_noise("--stochastic", model, "")?;
-        let make = |scheme| model.stochastic(parameters, scheme, arguments.seed);
+        let make = |scheme| {
+            let steps = model.stochastic(parameters, scheme, arguments.seed);
+            steps.map(Motion::Fixed)
+        };
         steps(asked, &Scheme::ALL, Scheme::name, "with noise", make)?
     } else {
+        let make = |scheme| match arguments.tolerance {
+            None => model.deterministic(parameters, scheme).map(Motion::Fixed),
+            Some(tolerance) => model
+                .adaptive(parameters, scheme, tolerance)
+                .map(Motion::Adaptive),
+        };
         let name = DeterministicScheme::name;
-        let make = |scheme| model.deterministic(parameters, scheme);
         steps(
             asked,
             &DeterministicScheme::ALL,
@@ -142,5 +169,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         scheme: asked,
         seed: noisy.then_some(arguments.seed),
     };
-    flight.simulate(arguments, &grid, advance)
+    flight.simulate(arguments, &grid, motion)
 }

@@ -62,6 +62,8 @@ pub trait GeneratedModel:
     /// Deviations of states and inputs that cost 1 in a regulator where none are asked for. One that is not listed costs
     /// nothing, or is not for the regulator.
     const DEVIATIONS: &'static [(&'static str, f64)];
+    /// Names of the boundaries where its drift goes over to another formula; empty where the drift is smooth.
+    const BOUNDARIES: &'static [&'static str] = &[];
 
     /// A vector over the parameters of its table.
     type ParametersOf<T: Component>: Vector<T> + Send + Sync + 'static;
@@ -142,6 +144,13 @@ pub trait GeneratedModel:
     fn fault(&self, x: &Self::State, u: &Self::Input) -> Option<impl Display> {
         let _ = (x, u);
         None::<&'static str>
+    }
+
+    /// The function of the boundary of this index at (x, u): 0 where the drift has a kink or jumps, in the unit of what is
+    /// compared there. NaN without such a boundary.
+    fn boundary(&self, index: usize, x: &Self::State, u: &Self::Input) -> f64 {
+        let _ = (index, x, u);
+        f64::NAN
     }
 
     /// ∂f/∂p at (x, u): a vector over the rows of f, each a vector over the parameters. The unit of an entry is that of its

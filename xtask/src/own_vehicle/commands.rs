@@ -115,12 +115,15 @@ covariance --state-std alpha=0.1deg --t-end 1 --dt 0.05 --members 30
     #/times/0/linear_std = 13
 "##;
 
-/// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad.
+/// The published trim of the winged cone: alpha 0.0312 rad, throttle 0.1762, elevator -0.0069 rad. Its thrust goes over to another
+/// formula where the throttle is 1, which the engine of 5 rad/s and damping 0.7 reaches half way from 0.5 to 1.5 at 0.2856118 s.
 pub(super) const WINGED_CONE: &str = r##"
 trim --model winged_cone --velocity 15060 --altitude 110000
     /converged = true; /state/alpha ~ 0.031227; /input/beta_command ~ 0.17619; /input/delta_e ~ -0.0069454
 poles
     #/poles = 7
+simulate --initial beta=0.5 --input beta_command=1.5 --tolerance 1e-9 --t-end 1 --dt 0.1 --out engine.csv
+    /steps = 10; #/adaptive/boundaries = 1; /adaptive/boundaries/0/boundary = "thrust_coefficient_boundary"; /adaptive/boundaries/0/time ~ 0.28561
 "##;
 
 /// As computed. Published, coarsely rounded: alpha 0.0315 rad, throttle 0.183, elevator -0.0066 rad.

@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use ahv_core::{Bounds, GeneratedModel, ModeOfMotion, Table, TrimProblem, Vector};
 use nalgebra::{DMatrix, DVector};
 
+use super::adaptive::{self, Fly};
 use super::rows;
 use super::steppers::{self, Advance, DeterministicScheme, StepperError};
 use super::{AnyModel, Components, ParameterValues, values, vector};
@@ -234,6 +235,15 @@ impl<M: GeneratedModel> AnyModel for Erased<M> {
         stepper: DeterministicScheme,
     ) -> Result<Advance, StepperError> {
         stepper.advance(model::<M>(p))
+    }
+
+    fn adaptive(
+        &self,
+        p: &[f64],
+        stepper: DeterministicScheme,
+        tolerance: f64,
+    ) -> Result<Fly, StepperError> {
+        adaptive::fly(stepper, model::<M>(p), tolerance)
     }
 
     fn stochastic(&self, p: &[f64], scheme: Scheme, seed: u64) -> Result<Advance, StepperError> {

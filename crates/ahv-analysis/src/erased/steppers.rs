@@ -25,6 +25,12 @@ pub enum StepperError {
         /// Name of the model.
         model: &'static str,
     },
+    /// A tolerance for a scheme that does not estimate its error.
+    #[error("{scheme} has no estimate of its error, which a tolerance needs")]
+    NoErrorEstimate {
+        /// Name of the scheme.
+        scheme: &'static str,
+    },
     /// The splitting for a model without coloured noise.
     #[error("splitting needs coloured noise, which {model} does not have")]
     NoColouredNoise {

@@ -1,10 +1,10 @@
 //! One simulation, for any model.
 
-use ahv_analysis::erased::Advance;
+use ahv_analysis::erased::{Advance, Fly};
 use ahv_integrate::{self as integrate, TimeGrid};
 
 use super::Arguments;
-use super::report::{Departure, Report};
+use super::report::{Adaptive, Departure, Report};
 
 use crate::assignment::Assignments;
 use crate::csv_file::CsvFile;
@@ -13,6 +13,14 @@ use crate::labels::Labels;
 use crate::number::Shown;
 use crate::progress::{Progress, Work};
 use crate::vehicle::Vehicle;
+
+/// How the state moves from row to row.
+pub(super) enum Motion {
+    /// By one step.
+    Fixed(Advance),
+    /// By steps as long as a tolerance allows.
+    Adaptive(Fly),
+}
 
 /// A vehicle with how it is to fly.
 pub(super) struct Flight<'a> {
@@ -24,7 +32,7 @@ pub(super) struct Flight<'a> {
 }
 
 impl Flight<'_> {
-    /// Simulates over `grid`; `advance` takes the step of the number and the length in s that it is given.
+    /// Simulates over `grid`.
     ///
     /// # Errors
     ///
@@ -33,7 +41,7 @@ impl Flight<'_> {
         &self,
         arguments: &Arguments,
         grid: &TimeGrid,
-        mut advance: Advance,
+        mut motion: Motion,
     ) -> Result<(), Failure> {
         let vehicle = self.vehicle;
         let (start, u) = self.start(arguments)?;
@@ -45,9 +53,9 @@ impl Flight<'_> {
             unit: "steps",
             total: Some(grid.steps().into()),
         });
-        let mut departure = None;
+        let (mut departure, mut passages) = (None, Vec::new());
         let mut row = Vec::with_capacity(start.len() + 1);
-        loop {
+        for step in 0..=grid.steps() {
             let (time, x) = (run.time, &run.state);
             row.clear();
             row.push(time);
@@ -57,11 +65,21 @@ impl Flight<'_> {
                 let mut outside = vehicle.states.outside(x, &vehicle.state_bounds);
                 departure = outside.next().map(|outside| Departure { time, outside });
             }
-            progress.reach(run.accepted.into());
-            let stepped = grid.step(&mut run, |x, step, dt| advance(x, &u, step, dt));
-            if !stepped.map_err(|failure| self.broken(&failure, &run, &arguments.out))? {
+            progress.reach(step.into());
+            if step == grid.steps() {
                 break;
             }
+            let moved = match &mut motion {
+                Motion::Fixed(advance) => {
+                    let moved = grid.step(&mut run, |x, step, dt| advance(x, &u, step, dt));
+                    moved.map(drop)
+                }
+                Motion::Adaptive(fly) => {
+                    let next = grid.time(step + 1);
+                    fly(&mut run, &u, next, &mut |passage| passages.push(passage))
+                }
+            };
+            moved.map_err(|failure| self.broken(&failure, &run, &arguments.out))?;
         }
         drop(progress);
         table.finish()?;
@@ -70,6 +88,12 @@ impl Flight<'_> {
             vehicle,
             grid,
             scheme: self.scheme,
+            adaptive: arguments.tolerance.map(|tolerance| Adaptive {
+                tolerance,
+                accepted: run.accepted,
+                refused: run.refused,
+                boundaries: passages,
+            }),
             seed: self.seed,
             initial_state: start,
             final_state: run.state,

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use ahv_analysis::erased::Passage;
 use ahv_core::Outside;
 use ahv_integrate::TimeGrid;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::failure::{Failure, complain, print};
 use crate::number::Shown;
@@ -18,12 +19,56 @@ pub(super) struct Departure {
     pub(super) outside: Outside,
 }
 
+/// What steps of varying length did.
+#[derive(Serialize)]
+pub(super) struct Adaptive {
+    pub(super) tolerance: f64,
+    /// Steps that met the tolerance.
+    pub(super) accepted: u32,
+    /// Steps that did not, and were tried again with a shorter one.
+    pub(super) refused: u32,
+    /// Passages of boundaries of the drift, in order.
+    #[serde(serialize_with = "passages")]
+    pub(super) boundaries: Vec<Passage>,
+}
+
+fn passages<S: Serializer>(passages: &[Passage], serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Json {
+        boundary: &'static str,
+        time: f64,
+    }
+
+    let told = passages
+        .iter()
+        .map(|&Passage { boundary, time }| Json { boundary, time });
+    serializer.collect_seq(told)
+}
+
+impl Adaptive {
+    /// Lines that tell of it.
+    fn text(&self) -> String {
+        let mut text = format!(
+            "tolerance {}: {} steps, {} tried again\n",
+            Shown(self.tolerance),
+            self.accepted,
+            self.refused
+        );
+        for Passage { boundary, time } in &self.boundaries {
+            text += &format!("at {} s passed {boundary}\n", Shown(*time));
+        }
+        text
+    }
+}
+
 /// A finished simulation.
 pub(super) struct Report<'a> {
     pub(super) vehicle: &'a Vehicle,
     pub(super) grid: &'a TimeGrid,
     pub(super) scheme: &'a str,
     pub(super) seed: Option<u64>,
+    /// None with steps of fixed length.
+    pub(super) adaptive: Option<Adaptive>,
     pub(super) initial_state: Vec<f64>,
     pub(super) final_state: Vec<f64>,
     pub(super) input: Vec<f64>,
@@ -44,6 +89,7 @@ struct Json<'a> {
     dt: f64,
     scheme: &'a str,
     seed: Option<u64>,
+    adaptive: Option<&'a Adaptive>,
     initial_state: Pairs<f64>,
     final_state: Pairs<f64>,
     out: String,
@@ -95,6 +141,7 @@ impl Report<'_> {
             dt: self.grid.dt(),
             scheme: self.scheme,
             seed: self.seed,
+            adaptive: self.adaptive.as_ref(),
             initial_state: self
                 .vehicle
                 .states
@@ -121,9 +168,15 @@ impl Report<'_> {
         let seed = self
             .seed
             .map_or_else(String::new, |seed| format!(", seed {seed}"));
-        let plural = if steps == 1 { "step" } else { "steps" };
+        let (how, adaptive) = match &self.adaptive {
+            None => {
+                let plural = if steps == 1 { "step" } else { "steps" };
+                (format!("{steps} {plural} of {dt} s"), String::new())
+            }
+            Some(adaptive) => (format!("a row every {dt} s"), adaptive.text()),
+        };
         format!(
-            "{}: {}, {steps} {plural} of {dt} s to {t_end} s{seed}, written to {}\n{}\nheld:\n{}\nat the end:\n{}",
+            "{}: {}, {how} to {t_end} s{seed}, written to {}\n{adaptive}{}\nheld:\n{}\nat the end:\n{}",
             self.vehicle.name(),
             self.scheme,
             self.out.display(),

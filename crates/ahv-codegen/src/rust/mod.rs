@@ -92,6 +92,7 @@ struct DescriptionTemplate<'a> {
     label: String,
     /// States of coloured noise.
     coloured: usize,
+    has_boundaries: bool,
 }
 
 impl DescriptionTemplate<'_> {
@@ -153,6 +154,7 @@ fn files(program: &Program<'_>) -> Result<BTreeMap<String, String>, EmitError> {
         model: program.model,
         label: program.label(),
         coloured: program.coloured.len(),
+        has_boundaries: program.groups().contains(&"boundaries"),
     };
     files.insert("description".to_owned(), render(&description)?);
     files.insert("mod".to_owned(), module(program)?);

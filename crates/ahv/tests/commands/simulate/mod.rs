@@ -1,5 +1,6 @@
 //! `ahv simulate`.
 
+mod adaptive;
 mod bench;
 mod conditions;
 mod faults;

@@ -50,6 +50,9 @@ impl GeneratedModel for Model<f64> {
         ("beta_command", 0.1),
         ("delta_e", 0.05),
     ];
+    const BOUNDARIES: &'static [&'static str] = <Boundaries<
+        f64,
+    > as ahv_core::Vector<f64>>::NAMES;
     type ParametersOf<T: ahv_core::Component> = Parameters<T>;
     type StateOf<T: ahv_core::Component> = State<T>;
     type InputOf<T: ahv_core::Component> = Input<T>;
@@ -72,6 +75,9 @@ impl GeneratedModel for Model<f64> {
     }
     fn coloured<V: ahv_core::CountVisitor>(_: V) -> Option<V::Output> {
         None
+    }
+    fn boundary(&self, index: usize, x: &State<f64>, u: &Input<f64>) -> f64 {
+        ahv_core::Vector::get(&boundaries(x, u, &self.prepared), index).unwrap_or(f64::NAN)
     }
     fn parameter_jacobian(&self, x: &State<f64>, u: &Input<f64>) -> ParameterJacobian<f64> {
         parameter_jacobian(x, u, &self.prepared)
