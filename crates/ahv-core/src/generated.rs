@@ -221,18 +221,38 @@ pub trait GeneratedModel:
     ) -> Self::NoiseOf<U>;
 }
 
-/// The functions of [`GeneratedModel`] that change the components of its vectors, in terms of what
-/// [`impl_vector!`](crate::impl_vector) makes. To be used inside the `impl`.
+/// The functions of [`GeneratedModel`] that make a model of its parameters or change the components of its vectors, in terms of
+/// its `new` and of what [`impl_vector!`](crate::impl_vector) makes. To be used inside the `impl`.
 #[macro_export]
-macro_rules! component_functions {
+macro_rules! model_functions {
     () => {
-        $crate::component_functions!(@map map_parameters ParametersOf);
-        $crate::component_functions!(@map map_state StateOf);
-        $crate::component_functions!(@map map_input InputOf);
-        $crate::component_functions!(@map map_noise NoiseOf);
-        $crate::component_functions!(@update update_parameters ParametersOf);
-        $crate::component_functions!(@update update_state StateOf);
-        $crate::component_functions!(@update update_input InputOf);
+        fn with_parameters(parameters: &Self::ParametersOf<f64>) -> Self {
+            Self::new(parameters)
+        }
+
+        fn generic<R: $crate::Real>(parameters: &Self::ParametersOf<R>) -> Self::With<R> {
+            <Self::With<R>>::new(parameters)
+        }
+
+        fn with_scalar<R: $crate::Real>(&self) -> Self::With<R> {
+            self.map_ref(|&it| R::from_f64(it))
+        }
+
+        #[inline(always)]
+        fn map_model<R: $crate::Real, U: $crate::Real>(
+            model: &Self::With<R>,
+            f: impl FnMut(&R) -> U,
+        ) -> Self::With<U> {
+            model.map_ref(f)
+        }
+
+        $crate::model_functions!(@map map_parameters ParametersOf);
+        $crate::model_functions!(@map map_state StateOf);
+        $crate::model_functions!(@map map_input InputOf);
+        $crate::model_functions!(@map map_noise NoiseOf);
+        $crate::model_functions!(@update update_parameters ParametersOf);
+        $crate::model_functions!(@update update_state StateOf);
+        $crate::model_functions!(@update update_input InputOf);
 
         #[inline(always)]
         fn zip_state<T: $crate::Component, U: $crate::Component>(

@@ -81,22 +81,6 @@ impl GeneratedModel for Model<f64> {
     type OutputsOf<T: Component> = Outputs<T>;
     type With<R: Real> = Model<R>;
 
-    fn with_parameters(parameters: &Parameters<f64>) -> Self {
-        Self::new(parameters)
-    }
-
-    fn generic<R: Real>(parameters: &Parameters<R>) -> Model<R> {
-        Model::new(parameters)
-    }
-
-    fn with_scalar<R: Real>(&self) -> Model<R> {
-        self.map_ref(|&it| R::from_f64(it))
-    }
-
-    fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {
-        model.map_ref(f)
-    }
-
     fn coloured<V: CountVisitor>(_: V) -> Option<V::Output> {
         None
     }
@@ -122,5 +106,5 @@ impl GeneratedModel for Model<f64> {
         outputs(model, x, u)
     }
 
-    ahv_core::component_functions!();
+    ahv_core::model_functions!();
 }

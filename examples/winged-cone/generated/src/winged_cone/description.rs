@@ -59,20 +59,6 @@ impl GeneratedModel for Model<f64> {
     type NoiseOf<T: ahv_core::Component> = Noise<T>;
     type OutputsOf<T: ahv_core::Component> = Outputs<T>;
     type With<R: Real> = Model<R>;
-    fn with_parameters(parameters: &Parameters<f64>) -> Self {
-        Self::new(parameters)
-    }
-    fn generic<R: Real>(parameters: &Parameters<R>) -> Model<R> {
-        Model::new(parameters)
-    }
-    fn with_scalar<R: Real>(&self) -> Model<R> {
-        self.map_ref(|&it| R::from_f64(it))
-    }
-
-    #[inline(always)]
-    fn map_model<R: Real, U: Real>(model: &Model<R>, f: impl FnMut(&R) -> U) -> Model<U> {
-        model.map_ref(f)
-    }
     fn coloured<V: ahv_core::CountVisitor>(_: V) -> Option<V::Output> {
         None
     }
@@ -85,5 +71,5 @@ impl GeneratedModel for Model<f64> {
     fn outputs<R: Real>(model: &Model<R>, x: &State<R>, u: &Input<R>) -> Outputs<R> {
         outputs(x, u, &model.prepared)
     }
-    ahv_core::component_functions!();
+    ahv_core::model_functions!();
 }
