@@ -63,6 +63,7 @@ pub(crate) fn experiment(flight: &Flight, mode: Mode) -> Experiment {
         dt: DT,
         snapshots: vec![STEPS as u64],
         seed: 0,
+        control_variate: false,
     }
 }
 

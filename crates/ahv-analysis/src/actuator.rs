@@ -54,6 +54,11 @@ impl Actuator {
 }
 
 impl ActuatorStep {
+    /// Of the distance to the command, what the lag makes good in the step.
+    pub(crate) const fn share(&self) -> f64 {
+        self.share
+    }
+
     /// The position after the step, from `position`. Without branches.
     #[inline(always)]
     pub fn moved(&self, position: f64, command: f64) -> f64 {

@@ -7,6 +7,8 @@
 
 mod arithmetic;
 mod batch;
+mod companion;
+mod control_variate;
 mod engine;
 mod experiment;
 mod feedback;
@@ -25,6 +27,7 @@ use scheme::MOST_NORMALS;
 
 pub use arithmetic::Mode;
 pub use batch::Loss;
+pub use control_variate::Remains;
 pub use engine::{Engine, Point};
 pub use experiment::{Experiment, MemberRecord, Particle};
 pub use feedback::{Feedback, Unsteady};

@@ -303,7 +303,7 @@ pub fn kurtosis(sample: &[f64]) -> f64 {
 
 /// 97.5 % point of Student's distribution: tabulated up to eight degrees of freedom, then by the expansion about the normal
 /// one (Abramowitz and Stegun 1964, 26.7.5).
-pub(crate) fn student_95(freedom: f64) -> f64 {
+pub fn student_95(freedom: f64) -> f64 {
     if let Some(&point) = STUDENT_95.get((freedom - 1.0).max(0.0) as usize) {
         return point;
     }

@@ -148,6 +148,7 @@ fn spread(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
             .map(|index| index * steps)
             .collect(),
         seed: arguments.seed,
+        control_variate: false,
     };
     let folder = arguments.out.as_deref();
     if let Some(folder) = folder {

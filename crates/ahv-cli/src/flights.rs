@@ -160,6 +160,7 @@ impl Flights {
             dt: self.dt,
             snapshots: vec![steps],
             seed: self.seed,
+            control_variate: false,
         })
     }
 

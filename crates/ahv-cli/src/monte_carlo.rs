@@ -40,6 +40,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000_000))]
     members: u64,
 
+    /// Fly a linear companion beside each member, whose mean and variance are known, and take from the means and standard deviations
+    /// what chance did to both: their intervals get much narrower where the flights are nearly linear
+    #[arg(long)]
+    control_variate: bool,
+
     /// Limits of states whose violation is told, e.g. alpha=-2deg..6deg
     #[arg(
         long,
@@ -93,6 +98,7 @@ impl Arguments {
         let mut ready = self.flights.ready()?;
         let experiment = &mut ready.experiment;
         experiment.snapshots = snapshots(experiment.steps(), self.snapshots);
+        experiment.control_variate = self.control_variate;
         experiment
             .watched
             .extend(limits(&self.limit, &ready.vehicle)?);

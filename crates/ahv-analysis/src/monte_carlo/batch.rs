@@ -46,7 +46,7 @@ impl Noise {
 
     /// Puts the numbers of a step to their places; those that are not used stay.
     #[inline(always)]
-    fn fill(&mut self, numbers: &mut [Packed; MOST_NORMALS], step: u64) {
+    pub(super) fn fill(&mut self, numbers: &mut [Packed; MOST_NORMALS], step: u64) {
         match self {
             Self::Double(channels) => fill(numbers, channels, step, |number| number),
             Self::Single(channels) => fill(numbers, channels, step, f64::from),
@@ -174,7 +174,7 @@ impl<F: GeneratedModel, S: Copy, A, E> Advance<'_, '_, '_, F, S, (A, E)> {
 
 /// Steps one member.
 #[inline(always)]
-fn step<F, S, A>(
+pub(super) fn step<F, S, A>(
     (model, scheme): (&F::With<Packed>, &S),
     dt: f64,
     x: &mut F::StateOf<A::Scalar>,

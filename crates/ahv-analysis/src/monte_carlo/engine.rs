@@ -7,6 +7,7 @@ use ahv_core::{GeneratedModel, Vector};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::MonteCarloError;
+use super::companion::Companion;
 use super::experiment::{Experiment, MemberRecord, row};
 use super::lanes::LANES;
 use super::outcome::{Collector, Outcome};
@@ -35,6 +36,7 @@ pub struct Point {
 pub struct Engine<'e> {
     pub(super) experiment: &'e Experiment,
     pub(super) propagator: Box<dyn Propagator + 'e>,
+    companion: Option<Companion>,
     /// Names of the states.
     pub(super) states: &'static [&'static str],
 }
@@ -47,9 +49,14 @@ impl Experiment {
     /// [`MonteCarloError::Scheme`], [`MonteCarloError::NoColouredNoise`] for a scheme that is not for this model's noise,
     /// [`MonteCarloError::StepSize`], [`MonteCarloError::Normals`].
     pub fn engine<F: GeneratedModel>(&self) -> Result<Engine<'_>, MonteCarloError> {
+        let propagator = propagator::<F>(self)?;
+        let companion = self
+            .control_variate
+            .then(|| Companion::new(self, &*propagator));
         Ok(Engine {
             experiment: self,
-            propagator: propagator::<F>(self)?,
+            propagator,
+            companion,
             states: F::StateOf::<f64>::NAMES,
         })
     }
@@ -94,7 +101,7 @@ impl<'e> Engine<'e> {
     ) -> Result<Outcome, MonteCarloError> {
         let pool = pool(threads)?;
         let started = Instant::now();
-        let mut collector = Collector::new(self.experiment);
+        let mut collector = Collector::new(self.experiment, self.companion.as_ref());
         let mut next = 0;
         while next < members {
             let end = members.min(next + GROUP);
@@ -126,8 +133,22 @@ impl<'e> Engine<'e> {
         members: &[u64],
         control: &Control,
     ) -> Result<Option<Vec<MemberRecord>>, MonteCarloError> {
-        let snapshots = &self.experiment.snapshots;
-        self.propagator.fly(members, snapshots, control)
+        let experiment = self.experiment;
+        let Some(mut seen) = self
+            .propagator
+            .fly(members, &experiment.snapshots, control)?
+        else {
+            return Ok(None);
+        };
+        if let Some(companion) = &self.companion {
+            let Some(flown) = companion.fly(experiment, members, control) else {
+                return Ok(None);
+            };
+            for (seen, states) in seen.iter_mut().zip(flown) {
+                seen.companion = states;
+            }
+        }
+        Ok(Some(seen))
     }
 
     /// State and input of one member at the start and after every `stride` steps, as long as it is not lost.

@@ -37,6 +37,8 @@ pub struct Experiment {
     pub snapshots: Vec<u64>,
     /// Seed of noise and dispersion.
     pub seed: u64,
+    /// Whether a linear companion flies beside each member, and makes the intervals of means and standard deviations narrower.
+    pub control_variate: bool,
 }
 
 /// A member on its way.
@@ -59,6 +61,8 @@ pub struct Particle {
 pub struct MemberRecord {
     /// States at the snapshots that it lived to see, one after the other.
     pub states: Vec<f64>,
+    /// States of its linear companion at all snapshots, in the same way; empty without control variate.
+    pub companion: Vec<f64>,
     /// Inputs at the same.
     pub inputs: Vec<f64>,
     /// Its last finite state.

@@ -6,7 +6,9 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::Loss;
-use super::experiment::{Experiment, MemberRecord};
+use super::companion::Companion;
+use super::control_variate::{ControlSums, Remains};
+use super::experiment::{Experiment, MemberRecord, row};
 use super::spread::{Bin, QUANTILES, Spread};
 use crate::statistics::{Estimate, OpenEstimate, deviation_of, mean_and_std};
 
@@ -69,6 +71,8 @@ pub struct StateSpread {
     pub mean: Option<Estimate>,
     /// Standard deviation with its interval of 95 %, by the fourth moment; `None` as for the mean.
     pub std: Option<OpenEstimate>,
+    /// What remains of the variances of both by the control variate; `None` where they are the sample's own.
+    pub remains: Option<Remains>,
     /// Standard deviation of those that have stayed in the first of the watched intervals so far; `None` as for the mean.
     pub std_of_stayed: Option<f64>,
     /// Quantiles of [`QUANTILES`], each with its interval of 95 %.
@@ -85,6 +89,7 @@ const HISTOGRAM_BINS: usize = 60;
 /// Sums over members, in their order.
 pub(super) struct Collector<'e> {
     experiment: &'e Experiment,
+    companion: Option<&'e Companion>,
     sums: Vec<Sums>,
     members: u64,
     lost: u64,
@@ -101,6 +106,8 @@ struct Sums {
     /// Products of the deviations from the origins, by rows.
     second: Vec<Vec<f64>>,
     spreads: Vec<Spread>,
+    /// Of each state; empty without control variate.
+    control: Vec<ControlSums>,
     left: Vec<Vec<u64>>,
     left_any: Vec<u64>,
     stayed: u64,
@@ -179,13 +186,14 @@ impl PowerSums {
 }
 
 impl<'e> Collector<'e> {
-    pub(super) fn new(experiment: &'e Experiment) -> Self {
+    pub(super) fn new(experiment: &'e Experiment, companion: Option<&'e Companion>) -> Self {
         let states = experiment.state[0].len();
         let sums = experiment.snapshots.iter().map(|_| Sums {
             count: 0,
             states: Vec::new(),
             second: vec![vec![0.0; states]; states],
             spreads: Vec::new(),
+            control: vec![ControlSums::default(); companion.map_or(0, |_| states)],
             left: vec![vec![0; states]; experiment.watched.len()],
             left_any: vec![0; experiment.watched.len()],
             stayed: 0,
@@ -194,6 +202,7 @@ impl<'e> Collector<'e> {
         Self {
             sums: sums.collect(),
             experiment,
+            companion,
             members: 0,
             lost: 0,
             not_flown: 0,
@@ -222,6 +231,9 @@ impl<'e> Collector<'e> {
         sums.for_each(|(index, (sums, &step))| {
             let values: Vec<&[f64]> = seen.iter().filter_map(|seen| seen.state(index)).collect();
             sums.add(&values);
+            if let Some(companion) = self.companion {
+                sums.compare(index, seen, companion);
+            }
             let (mut flying, mut stayed) = (values.iter(), Vec::new());
             for seen in seen {
                 let left = sums.leave(&seen.left, step);
@@ -235,12 +247,17 @@ impl<'e> Collector<'e> {
 
     pub(super) fn outcome(self, asked: u64, elapsed: Duration) -> Outcome {
         let dt = self.experiment.dt;
+        let flown = self.members - self.not_flown;
         let snapshots = self.sums.into_iter().zip(&self.experiment.snapshots);
         Outcome {
             members: self.members,
             asked,
             snapshots: snapshots
-                .map(|(sums, &step)| sums.snapshot(step as f64 * dt))
+                .map(|(sums, &step)| {
+                    // Who is left of some that were lost is no sample of what the companion knows.
+                    let is_known = sums.count == flown;
+                    sums.snapshot(step as f64 * dt, is_known)
+                })
                 .collect(),
             lost: self.lost,
             not_flown: self.not_flown,
@@ -251,7 +268,7 @@ impl<'e> Collector<'e> {
                 .iter()
                 .map(|byte| format!("{byte:02x}"))
                 .collect(),
-            member_steps: (self.members - self.not_flown).saturating_mul(self.experiment.steps()),
+            member_steps: flown.saturating_mul(self.experiment.steps()),
             elapsed,
         }
     }
@@ -322,7 +339,24 @@ impl Sums {
         }
     }
 
-    fn snapshot(mut self, time: f64) -> Snapshot {
+    /// Members at snapshot number `index`, beside their companions.
+    fn compare(&mut self, index: usize, seen: &[MemberRecord], companion: &Companion) {
+        let variances = companion.variances.get(index).map_or(&[][..], |it| it);
+        for seen in seen {
+            let pair = (
+                seen.state(index),
+                row(&seen.companion, variances.len(), index),
+            );
+            let (Some(x), Some(z)) = pair else { continue };
+            let states = self.control.iter_mut().zip(&self.states).zip(variances);
+            for (((control, state), variance), (x, z)) in states.zip(x.iter().zip(z)) {
+                control.add((x - state.origin) / state.scale, z / variance.sqrt());
+            }
+        }
+    }
+
+    /// What is seen; whether the companions know of these members, where there are any.
+    fn snapshot(mut self, time: f64, is_known: bool) -> Snapshot {
         if self.states.is_empty() {
             let states = self.second.len();
             self.states = vec![PowerSums::about(&[]); states];
@@ -352,10 +386,18 @@ impl Sums {
             // One number has no spread.
             let stayed = self.stayed_moments.get(index).filter(|_| self.stayed > 1);
             let of_stayed = stayed.map(|it| (it.squares / (self.stayed - 1) as f64).sqrt());
+            let control = self.control.get(index).filter(|_| is_known);
+            let control = control.and_then(|it| it.estimates(sums.origin, sums.scale));
+            let own = Some(Estimate::of_mean(mean, std, n));
+            let own_std = Some(OpenEstimate::of_std(std, kurtosis, n));
             StateSpread {
-                mean: Some(Estimate::of_mean(mean, std, n)).filter(|it| n > 1.0 && it.is_finite()),
-                std: Some(OpenEstimate::of_std(std, kurtosis, n))
-                    .filter(|it| n > 1.0 && it.is_finite()),
+                mean: control
+                    .map(|it| it.mean)
+                    .or(own.filter(|it| n > 1.0 && it.is_finite())),
+                std: control
+                    .map(|it| it.std)
+                    .or(own_std.filter(|it| n > 1.0 && it.is_finite())),
+                remains: control.map(|it| it.remains),
                 std_of_stayed: of_stayed.filter(|std| std.is_finite()),
                 quantiles: QUANTILES.map(|share| spread.quantile(share)),
                 resolution: spread.resolution(),

@@ -11,10 +11,10 @@ use ahv_integrate::{
 };
 
 use super::MonteCarloError;
-use super::arithmetic::{Called, In, Member, Mode};
-use super::batch::{Batch, Dynamics, Noise};
+use super::arithmetic::{Arithmetic, Called, In, Member, Mode};
+use super::batch::{Batch, Dynamics, Noise, step};
 use super::experiment::{Experiment, MemberRecord, Particle};
-use super::lanes::{self, LANES, Packed, packed, push_lane};
+use super::lanes::{self, LANES, Packed, of_lane, packed, push_lane};
 use super::observe::{BoundsMonitor, Observers};
 use super::passage::{FirstPassage, Goal, PassageRecord, pass};
 use super::scheme::{MOST_NORMALS, OneByOne, Scheme, Steps};
@@ -22,12 +22,19 @@ use crate::ordered::Control;
 use crate::values::vector;
 
 /// Steps between two looks at whether to stop.
-const STEPS_PER_STOP_CHECK: u64 = 1024;
+pub(super) const STEPS_PER_STOP_CHECK: u64 = 1024;
 /// Where in the validity box it is asked which noise moves the states; there is nothing special about it.
 const FRACTION: f64 = 0.618;
 
 /// Propagates members of an experiment.
 pub(super) trait Propagator: Send + Sync {
+    /// Which normal numbers a step uses.
+    fn used(&self) -> &[bool; MOST_NORMALS];
+
+    /// The state after a step of a member with the experiment's own parameters from this state, with this input and these normal
+    /// numbers; not a number where it has none.
+    fn after_step(&self, x: &[f64], u: &[f64], normals: &[f64; MOST_NORMALS]) -> Vec<f64>;
+
     /// Flies members, at most [`LANES`], and tells their states after each of these numbers of steps, which ascend; `None` if
     /// the work was stopped.
     ///
@@ -283,6 +290,31 @@ where
     E: Member<F>,
     S: Steps<A::Model> + Steps<<Called<E> as Member<F>>::Model>,
 {
+    fn used(&self) -> &[bool; MOST_NORMALS] {
+        &self.used
+    }
+
+    fn after_step(&self, x: &[f64], u: &[f64], normals: &[f64; MOST_NORMALS]) -> Vec<f64> {
+        let Dynamics { model, scheme } = &self.shared;
+        let x: F::StateOf<Packed> = lanes::side_by_side([x; LANES]);
+        let u: F::InputOf<Packed> = lanes::side_by_side([u; LANES]);
+        let normals = normals.map(Packed::splat);
+        let mut member = F::map_state(&x, |numbers| E::Scalar::of(numbers.0[0]));
+        let stepped = step::<F, S, Called<E>>(
+            (model, scheme),
+            self.experiment.dt,
+            &mut member,
+            &u,
+            &normals,
+            0,
+        );
+        let after = F::map_state(&member, |value| match stepped {
+            Ok(()) => Packed::splat(value.value()),
+            Err(_) => Packed::splat(f64::NAN),
+        });
+        of_lane(&after, 0)
+    }
+
     fn fly(
         &self,
         members: &[u64],
@@ -327,6 +359,7 @@ where
         let at = at.into_iter().enumerate();
         let seen = at.map(|(lane, (states, inputs))| MemberRecord {
             states,
+            companion: Vec::new(),
             inputs,
             last: batch.last(lane),
             lost: batch.lost[lane],

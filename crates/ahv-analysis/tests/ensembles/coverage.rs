@@ -324,6 +324,13 @@ fn intervals_of_flights_cover_as_documented() {
             ..calm.clone()
         }
     });
+    let states = ["velocity", "alpha"];
+    let name = "sdcom section5.3, 1 s, control variate";
+    flights::<sdcom::Model<f64>>(&mut table, name, &states, |seed| Experiment {
+        seed,
+        control_variate: true,
+        ..calm.clone()
+    });
     let calm = held::<dcom::Model<f64>>(&dcom::NOMINAL, Scheme::Heun, 4e-3, 125);
     let uncertainty = dcom::SETS[0].uncertainty();
     let states = ["alpha", "pitch_rate"];
@@ -333,6 +340,17 @@ fn intervals_of_flights_cover_as_documented() {
         Experiment {
             dispersion: Some(draws.expect("draws")),
             seed,
+            ..calm.clone()
+        }
+    });
+    let name = "dcom dispersed, 0.5 s, control variate";
+    flights::<dcom::Model<f64>>(&mut table, name, &states, |seed| {
+        let law = Distribution::Uniform;
+        let draws = Draws::new(dcom::NOMINAL, uncertainty, law, Vec::new(), seed);
+        Experiment {
+            dispersion: Some(draws.expect("draws")),
+            seed,
+            control_variate: true,
             ..calm.clone()
         }
     });
@@ -359,5 +377,6 @@ fn held<M: GeneratedModel>(
         dt,
         snapshots: vec![steps],
         seed: 0,
+        control_variate: false,
     }
 }

@@ -6,6 +6,7 @@
 mod chain;
 #[path = "../common/mod.rs"]
 mod common;
+mod control_variate;
 mod covariance;
 mod coverage;
 mod feedback;

@@ -53,6 +53,7 @@ pub(super) fn experiment(scheme: Scheme, dt: f64, snapshots: Vec<u64>) -> Experi
         dt,
         snapshots,
         seed: SEED,
+        control_variate: false,
     }
 }
 
@@ -407,6 +408,7 @@ fn held<M: GeneratedModel>(
         dt,
         snapshots,
         seed: SEED,
+        control_variate: false,
     }
 }
 

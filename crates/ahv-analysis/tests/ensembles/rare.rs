@@ -34,6 +34,7 @@ fn open_loop(seed: u64) -> Experiment {
         dt: DT,
         snapshots: vec![STEPS],
         seed,
+        control_variate: false,
     }
 }
 

@@ -32,6 +32,7 @@ fn sample<M: GeneratedModel>(
         dt: flight.dt,
         snapshots,
         seed: 3,
+        control_variate: false,
     };
     let engine = experiment.engine::<M>().expect("the scheme goes");
     let outcome = engine.run(members, 2, &Control::default());

@@ -1,6 +1,6 @@
 //! What is told of the flights as JSON, and what is warned of.
 
-use ahv_analysis::monte_carlo::{QUANTILES, Snapshot};
+use ahv_analysis::monte_carlo::{QUANTILES, Remains, Snapshot};
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
 use serde::Serialize;
 
@@ -60,6 +60,9 @@ struct JsonSnapshot {
     members: u64,
     mean: Pairs<Option<Estimate>>,
     std: Pairs<Option<OpenEstimate>>,
+    /// With `--control-variate`: what remains of the variances of mean and standard deviation, where it could be used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    variance_that_remains: Option<Pairs<Option<Remains>>>,
     quantiles: Pairs<Vec<JsonQuantile>>,
     quantile_resolution: Pairs<f64>,
     covariance: Vec<Vec<Option<f64>>>,
@@ -136,6 +139,10 @@ impl Summary<'_> {
             members: snapshot.members,
             mean: names.pairs(states().map(|it| it.mean)),
             std: names.pairs(states().map(|it| it.std)),
+            variance_that_remains: self
+                .arguments
+                .control_variate
+                .then(|| names.pairs(states().map(|it| it.remains))),
             quantiles: names.pairs(quantiles),
             quantile_resolution: names.pairs(states().map(|it| it.resolution)),
             covariance: snapshot

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ahv_analysis::monte_carlo::StateSpread;
+use ahv_analysis::monte_carlo::{Remains, StateSpread};
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
 
 use super::Summary;
@@ -37,6 +37,7 @@ impl Summary<'_> {
         if rows.iter().flatten().any(|cell| cell.ends_with('*')) {
             text += "\n* the sample is too small for an interval with two ends of this point";
         }
+        text += &self.control();
         // Writing into a String cannot fail.
         let _ = write!(
             text,
@@ -65,6 +66,36 @@ impl Summary<'_> {
         text += &self.causes();
         let _ = write!(text, "\ndigest of the last states: {}", self.outcome.digest);
         text
+    }
+
+    /// What the control variate did at the end.
+    fn control(&self) -> String {
+        let Some(last) = self.outcome.snapshots.last() else {
+            return String::new();
+        };
+        if !self.arguments.control_variate {
+            return String::new();
+        }
+        let states = self.ready.vehicle.states.iter().zip(&last.states);
+        let shown = states.filter_map(|((name, _), state)| {
+            let Remains { mean, std } = state.remains?;
+            Some(format!("{name} {:.3e} {:.3e}", Shown(mean), Shown(std)))
+        });
+        let shown: Vec<String> = shown.collect();
+        if !shown.is_empty() {
+            return format!(
+                "\nby the control variate; what remains of the variance of mean and standard deviation:\n  {}",
+                shown.join("\n  ")
+            );
+        }
+        let lost = self.outcome.flown() - last.members;
+        let why = match lost {
+            0 => "the flights are too few, or their linear companions do not move".to_owned(),
+            _ => format!(
+                "{lost} flights were lost, and those that are left are no sample of what is known"
+            ),
+        };
+        format!("\nno control variate: {why}")
     }
 
     /// What was flown.
