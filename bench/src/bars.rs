@@ -58,7 +58,6 @@ const THREADS: usize = 2;
 const OF_LANES: &str = "what else runs on the core: a loop in lanes keeps its ports busy";
 const OF_RK4: &str = "one member in a turn: of the loop with two the compiler makes no faster code";
 const OF_NOISE: &str = "drift and noise increment; what normal numbers take stands below";
-const OF_INTERVAL: &str = "the same scheme and step for both: it is what a member-step takes, with the law and the actuators";
 const OF_MODES: &str =
     "normal numbers, and the sums over runs; NumPy's numbers are by SFC64, its fastest generator";
 
@@ -69,7 +68,7 @@ pub(crate) fn all(of: &Found) -> Vec<Bar> {
     bars.extend(ensembles(&of.monte_carlo.finishes));
     bars.extend(processes(of.processes.as_deref().unwrap_or_default()));
     let interval = of.interval.as_ref().and_then(|it| {
-        let [peer, own] = &it.finishes[..] else {
+        let [peer, _, own] = &it.finishes[..] else {
             return None;
         };
         Some(Measured::in_rounds(own, peer))
@@ -79,7 +78,7 @@ pub(crate) fn all(of: &Found) -> Vec<Bar> {
         ENSEMBLE,
         0.05,
         interval,
-        OF_INTERVAL,
+        "",
     ));
     bars.extend(sections(&of.modes.finishes));
     let weak = of.weak.as_ref().and_then(|it| {
