@@ -51,7 +51,7 @@ pub(super) fn options(arguments: &Arguments, ready: &Ready) -> Vec<Choice> {
         pairs.collect::<Vec<_>>().join(", ")
     };
     let steps: Vec<String> = experiment.snapshots.iter().map(u64::to_string).collect();
-    let mut all = vec![
+    let all = vec![
         ("version of ahv", env!("CARGO_PKG_VERSION").to_owned()),
         ("--model", vehicle.name().to_owned()),
         ("--set", vehicle.set.to_string()),
@@ -113,7 +113,9 @@ pub(super) fn options(arguments: &Arguments, ready: &Ready) -> Vec<Choice> {
             )
         })
         .collect();
-    let all = all.drain(..).map(|(name, value)| (name.to_owned(), value));
+    let all = all
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value));
     all.chain(choices).collect()
 }
 

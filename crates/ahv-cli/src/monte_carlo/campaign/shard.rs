@@ -1,5 +1,6 @@
 //! A shard on disk: a row a member, with the sums of its members in the metadata.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -98,11 +99,7 @@ fn checksum(campaign: &str, part: &str, records: &[MemberRecord]) -> String {
 
 fn campaign_text(manifest: &Manifest) -> Result<String, Failure> {
     let options = manifest.options().iter();
-    output::json(
-        &options
-            .cloned()
-            .collect::<std::collections::BTreeMap<String, String>>(),
-    )
+    output::json(&options.cloned().collect::<BTreeMap<String, String>>())
 }
 
 impl Flown {
@@ -119,7 +116,7 @@ impl Flown {
     ) -> Result<(), Failure> {
         let columns = columns(ready);
         let units = columns.iter().map(|it| (&*it.name, it.unit));
-        let units: std::collections::BTreeMap<&str, &str> = units.collect();
+        let units: BTreeMap<&str, &str> = units.collect();
         let (campaign, part) = (campaign_text(manifest)?, output::json(&self.part)?);
         let metadata = [
             (CHECKSUM, checksum(&campaign, &part, &self.records)),
