@@ -35,7 +35,7 @@ def elapsed(client: distributed.Client, tasks: int, duration_s: float) -> float:
 
 def main() -> None:
     tasks = int(sys.argv[2]) if len(sys.argv) > 2 else TASKS
-    cluster = distributed.LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=None)
+    cluster = distributed.LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=":0")
     with cluster, distributed.Client(cluster) as client:
         client.wait_for_workers(WORKERS)
         elapsed(client, 100, 0.0)

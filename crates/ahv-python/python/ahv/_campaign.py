@@ -141,7 +141,7 @@ def _client(distributed: Any, client: Any, workers: int) -> Iterator[Any]:
     if client is None:
         if workers < 1:
             raise RequestError(f"workers: {workers}; there must be 1 or more")
-        cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+        cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
         with cluster, distributed.Client(cluster) as own:
             yield own
     elif isinstance(client, str):
