@@ -33,7 +33,7 @@ const QUANTITY: &str = "alpha";
 const PEER: &str = "CasADi's step in C++";
 const OWN: &str = "ahv";
 /// Flights that give `ahv` an interval as narrow by its control variate; whether they do is checked.
-const FEW: usize = 64;
+const FEW: usize = 512;
 /// Width of the interval, as a share of the value.
 const WIDTH: f64 = 0.01;
 
@@ -100,7 +100,7 @@ pub(crate) fn measure(
         },
         Runner {
             name: OWN,
-            how: "the same with `--control-variate`, 64 flights",
+            how: "the same with `--control-variate`, 512 flights",
             run: Box::new(controlled),
         },
     ];

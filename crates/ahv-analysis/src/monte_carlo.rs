@@ -2,11 +2,12 @@
 //!
 //! Members fly [`LANES`] at a time: numbers lie member by member, a step is a loop over members around code without
 //! branches, and `pulp` runs the loop with the vector instructions that the machine has. Batches go to threads by `rayon`.
-//! Noise is a function of (seed, member, channel, step), and sums run in the order of the members: a result has the same bits
-//! whatever the threads, and a member the bits that it has alone.
+//! Noise is a function of (seed, member, channel, step), and sums run in an order of their own (`sums.rs`): a result has the same
+//! bits whatever the threads and the parts that members are flown in, and a member the bits that it has alone.
 
 mod arithmetic;
 mod batch;
+mod bits;
 mod companion;
 mod control_variate;
 mod engine;
@@ -20,6 +21,7 @@ mod propagator;
 mod rare;
 mod scheme;
 mod spread;
+mod sums;
 
 use ahv_core::Shown;
 use ahv_integrate::NoiseError;
@@ -32,11 +34,12 @@ pub use engine::{Engine, Point};
 pub use experiment::{Experiment, MemberRecord, Particle};
 pub use feedback::{Feedback, Unsteady};
 pub use lanes::{LANES, Packed};
-pub use outcome::{Outcome, Snapshot, StateSpread};
+pub use outcome::{Outcome, Snapshot, StateSpread, Tally};
 pub use propagator::generic_point;
 pub use rare::{FEWEST_REPETITIONS, Level, RareError, RareEstimate, RareEvent};
 pub use scheme::Scheme;
 pub use spread::{Bin, QUANTILES};
+pub use sums::{BLOCK, Part, Reference};
 
 /// Why members cannot be flown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

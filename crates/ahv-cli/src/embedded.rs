@@ -13,6 +13,8 @@ use crate::registry;
 use crate::vehicle::{Vehicle, VehicleArgs};
 use crate::{Asked, Command, ExtraCommand, asked};
 
+#[cfg(feature = "parquet")]
+pub use crate::monte_carlo::campaign::Lock as CampaignLock;
 pub use crate::signals::stop;
 
 /// How clap begins what is wrong.

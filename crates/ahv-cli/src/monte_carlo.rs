@@ -1,5 +1,7 @@
 //! `ahv montecarlo`: many flights with noise and dispersions.
 
+#[cfg(feature = "parquet")]
+pub(crate) mod campaign;
 mod causes;
 mod figure;
 mod members;
@@ -73,6 +75,10 @@ pub(crate) struct Arguments {
     /// Print the outcome as JSON, in the units of the model
     #[arg(long)]
     json: bool,
+
+    #[cfg(feature = "parquet")]
+    #[command(flatten)]
+    campaign: campaign::CampaignArguments,
 }
 
 /// Runs the command.
@@ -104,6 +110,10 @@ impl Arguments {
             .extend(limits(&self.limit, &ready.vehicle)?);
         // Before the work: what cannot be written is not found out after it.
         trajectories::check(self)?;
+        #[cfg(feature = "parquet")]
+        if self.part_of_campaign(&ready)?.is_some() {
+            return Ok(());
+        }
         if let Some(folder) = &self.out {
             output::folder(folder)?;
         }
@@ -113,6 +123,12 @@ impl Arguments {
         {
             output::warn_of_earlier(folder, &["trajectories.csv", "trajectories.parquet"]);
         }
+        #[cfg(feature = "parquet")]
+        let campaign = folder.filter(|_| self.campaign.resume);
+        #[cfg(feature = "parquet")]
+        let campaign = campaign.map(|folder| campaign::Campaign::lead(self, &ready, folder));
+        #[cfg(feature = "parquet")]
+        let campaign = campaign.transpose()?;
         let list = folder.map(|folder| MemberList::create(&ready, folder, self.members));
         let mut list = list.transpose()?;
         let progress = Progress::start(Work {
@@ -124,18 +140,19 @@ impl Arguments {
         let mut kept = Kept::default();
         let outcome = watched(progress, |control| {
             let engine = ready.vehicle.model.engine(&ready.experiment)?;
-            engine.run_and_list(
-                self.members,
-                threads,
-                control,
-                |first, seen: &[MemberRecord]| {
-                    kept.add(&ready, first, seen);
-                    if let Some(list) = &mut list {
-                        list.add(first, seen);
-                    }
-                },
-            )
-        })?;
+            let mut listed = |first, seen: &[MemberRecord]| {
+                kept.add(&ready, first, seen);
+                if let Some(list) = &mut list {
+                    list.add(first, seen);
+                }
+            };
+            #[cfg(feature = "parquet")]
+            if let Some(campaign) = &campaign {
+                return Ok(campaign.gather(&engine, control, listed));
+            }
+            let flown = engine.run_and_list(self.members, threads, control, &mut listed)?;
+            Ok(Ok(flown))
+        })??;
         let complete = outcome.members == outcome.asked;
         let listed = list.map_or(Ok(()), |list| list.finish(complete));
         let told = Summary {

@@ -1,5 +1,6 @@
 //! The commands, by the words of their lines.
 
+use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -10,6 +11,26 @@ use pyo3::prelude::*;
 
 use crate::built;
 use crate::failure::raised;
+
+/// The right to lead the campaign of a folder, until it is released.
+#[pyclass]
+pub(crate) struct CampaignLock(Option<embedded::CampaignLock>);
+
+#[pymethods]
+impl CampaignLock {
+    /// Takes it; refused while another campaign is at work there.
+    #[new]
+    fn new(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        let lock = embedded::CampaignLock::take(&folder);
+        lock.map(|it| Self(Some(it)))
+            .map_err(|failure| raised(py, &failure))
+    }
+
+    /// Gives it back.
+    fn release(&mut self) {
+        self.0 = None;
+    }
+}
 
 /// Time between two looks for Ctrl-C.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);

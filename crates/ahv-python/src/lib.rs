@@ -91,6 +91,7 @@ pub fn fill<L: ModelList>(
         documents: texts,
     });
     module.add_class::<vehicle::Vehicle>()?;
+    module.add_class::<commands::CampaignLock>()?;
     module.add_function(wrap_pyfunction!(vehicle::models, module)?)?;
     module.add_function(wrap_pyfunction!(commands::command, module)?)?;
     module.add_function(wrap_pyfunction!(commands::main, module)?)?;

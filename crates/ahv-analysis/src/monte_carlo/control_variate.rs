@@ -1,12 +1,76 @@
 //! Means and standard deviations of members by the control variate: what the companions' sample happens to be off what is known
 //! of them, the members' is off too (Lavenberg and Welch 1981).
 
+use rayon::prelude::*;
+
+use super::companion::Companion;
+use super::experiment::{MemberRecord, row};
+use super::outcome::Snapshot;
+use super::sums::Reference;
 use crate::statistics::{Estimate, OpenEstimate, student_95};
 
-/// Members below which the sample's own estimates are told: the correlation is known too badly.
-const FEWEST: f64 = 32.0;
+/// Members below which the sample's own estimates are told: of fewer, what remains of the variance is known too badly for an interval
+/// (`docs/monte-carlo.md` has the coverage).
+const FEWEST: f64 = 500.0;
 /// What remains of a variance is at least this part of it: less is rounding.
 const LEAST: f64 = 1e-12;
+
+/// The sums of all states at all snapshots, beside what is known of the companions.
+pub(super) struct Controls<'e> {
+    companion: &'e Companion,
+    /// By snapshot and state.
+    sums: Vec<Vec<ControlSums>>,
+}
+
+impl<'e> Controls<'e> {
+    /// Of no members so far.
+    pub(super) fn new(companion: &'e Companion) -> Self {
+        let zeros = |variances: &Vec<f64>| vec![ControlSums::default(); variances.len()];
+        Self {
+            companion,
+            sums: companion.variances.iter().map(zeros).collect(),
+        }
+    }
+
+    /// The members that come next.
+    pub(super) fn add(&mut self, reference: &Reference, seen: &[MemberRecord]) {
+        let snapshots = self.sums.par_iter_mut().zip(&self.companion.variances);
+        snapshots
+            .enumerate()
+            .for_each(|(snapshot, (sums, variances))| {
+                for seen in seen {
+                    let companion = row(&seen.companion, variances.len(), snapshot);
+                    let (Some(x), Some(z)) = (seen.state(snapshot), companion) else {
+                        continue;
+                    };
+                    let pairs = sums.iter_mut().zip(variances).zip(x.iter().zip(z));
+                    for (state, ((sums, variance), (x, z))) in pairs.enumerate() {
+                        let about = reference.origin_and_unit(snapshot, state);
+                        let [origin, unit] = about.unwrap_or([0.0, 1.0]);
+                        sums.add((x - origin) / unit, z / variance.sqrt());
+                    }
+                }
+            });
+    }
+
+    /// Puts its estimates in the place of the sample's own, where `flown` members all fly at the snapshot: who is left of some that
+    /// were lost is no sample of what is known of the companions.
+    pub(super) fn apply(&self, reference: &Reference, flown: u64, snapshots: &mut [Snapshot]) {
+        for (index, (snapshot, sums)) in snapshots.iter_mut().zip(&self.sums).enumerate() {
+            if snapshot.members != flown {
+                continue;
+            }
+            for (state, (spread, sums)) in snapshot.states.iter_mut().zip(sums).enumerate() {
+                let about = reference.origin_and_unit(index, state);
+                let found = about.and_then(|[origin, unit]| sums.estimates(origin, unit));
+                if let Some(Controlled { mean, std, remains }) = found {
+                    (spread.mean, spread.std) = (Some(mean), Some(std));
+                    spread.remains = Some(remains);
+                }
+            }
+        }
+    }
+}
 
 /// Sums over members of products of powers of the deviation of a state and of its companion's, each in a unit of its own.
 #[derive(Clone, Copy, Debug, Default)]

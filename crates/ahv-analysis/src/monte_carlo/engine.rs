@@ -10,12 +10,11 @@ use super::MonteCarloError;
 use super::companion::Companion;
 use super::experiment::{Experiment, MemberRecord, row};
 use super::lanes::LANES;
-use super::outcome::{Collector, Outcome};
+use super::outcome::{Outcome, Tally};
 use super::propagator::{Propagator, propagator};
+use super::sums::{BLOCK, Part, Reference};
 use crate::ordered::{Control, in_order};
 
-/// Members whose flights are in memory at a time.
-const GROUP: u64 = 2048;
 /// Steps of a member that are worth a task of their own.
 const TASK_STEPS: u64 = 1000;
 /// Most batches of [`LANES`] members that one task flies.
@@ -101,26 +100,90 @@ impl<'e> Engine<'e> {
     ) -> Result<Outcome, MonteCarloError> {
         let pool = pool(threads)?;
         let started = Instant::now();
-        let mut collector = Collector::new(self.experiment, self.companion.as_ref());
-        let mut next = 0;
-        while next < members {
-            let end = members.min(next + GROUP);
-            let fly = || self.group(next..end, control);
-            let seen = pool.install(fly)?;
-            let flown = next + seen.len() as u64;
-            if flown > next {
-                list(next, &seen);
-                pool.install(|| collector.add(next, &seen));
-                next = flown;
+        let mut tally: Option<Tally<'_>> = None;
+        self.blocks(0..members, &pool, control, |first, seen| {
+            list(first, seen);
+            let new = || {
+                let reference = Reference::of(self.experiment, seen);
+                Tally::new(self.experiment, reference).beside(self.companion.as_ref())
+            };
+            pool.install(|| tally.get_or_insert_with(new).add(seen));
+        })?;
+        let tally = tally.ok_or(MonteCarloError::Stopped)?;
+        Ok(tally.outcome(members, started.elapsed()))
+    }
+
+    /// What the sums over `members` members are taken about: their first block is flown for it.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`]; `Stopped` if it was stopped.
+    pub fn reference(
+        &self,
+        members: u64,
+        threads: usize,
+        control: &Control,
+    ) -> Result<Reference, MonteCarloError> {
+        let members = members.min(BLOCK);
+        let pool = pool(threads)?;
+        let mut reference = None;
+        self.blocks(0..members, &pool, control, |_, seen| {
+            let whole = seen.len() as u64 == members;
+            let of = || Reference::of(self.experiment, seen);
+            reference = whole.then(|| pool.install(of));
+        })?;
+        reference.ok_or(MonteCarloError::Stopped)
+    }
+
+    /// Flies members in a row, the first of which is a multiple of [`BLOCK`]; `list` as in [`Self::run_and_list`].
+    ///
+    /// Parts that are joined in their order ([`Tally::join`]) show what a run of all members shows, to the bit, wherever each
+    /// was flown.
+    ///
+    /// # Errors
+    ///
+    /// [`MonteCarloError`]; `Stopped` if it was stopped.
+    pub fn part(
+        &self,
+        members: Range<u64>,
+        reference: &Reference,
+        threads: usize,
+        control: &Control,
+        mut list: impl FnMut(u64, &[MemberRecord]),
+    ) -> Result<Part, MonteCarloError> {
+        let mut part = Part::new(self.experiment, reference, members.start);
+        let pool = pool(threads)?;
+        let asked = members.end - members.start;
+        self.blocks(members, &pool, control, |first, seen| {
+            list(first, seen);
+            pool.install(|| part.add(self.experiment, reference, seen));
+        })?;
+        let whole = part.members() == asked;
+        whole.then_some(part).ok_or(MonteCarloError::Stopped)
+    }
+
+    /// Flies members block by block; stopped, the last block is a part of one, or none.
+    fn blocks(
+        &self,
+        members: Range<u64>,
+        pool: &ThreadPool,
+        control: &Control,
+        mut take: impl FnMut(u64, &[MemberRecord]),
+    ) -> Result<(), MonteCarloError> {
+        let mut next = members.start;
+        while next < members.end {
+            let end = members.end.min(next + BLOCK);
+            let seen = pool.install(|| self.group(next..end, control))?;
+            let whole = seen.len() as u64 == end - next;
+            if !seen.is_empty() {
+                take(next, &seen);
             }
-            if flown < end {
+            if !whole {
                 break;
             }
+            next = end;
         }
-        if next == 0 {
-            return Err(MonteCarloError::Stopped);
-        }
-        Ok(collector.outcome(members, started.elapsed()))
+        Ok(())
     }
 
     /// Flies members, at most [`LANES`]; `None` if the work was stopped.

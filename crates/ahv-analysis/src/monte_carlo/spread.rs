@@ -13,17 +13,31 @@ const REACH: f64 = 20.0;
 /// Shares of the members at whose quantiles is looked.
 pub const QUANTILES: [f64; 7] = [0.005, 0.05, 0.25, 0.5, 0.75, 0.95, 0.995];
 
+/// Where the bins lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bins {
+    /// Lower edge of the first one that is not open.
+    pub(super) low: f64,
+    /// Width of each.
+    pub(super) width: f64,
+}
+
 /// The numbers of the first members as they are, and the counts of all in bins that are chosen by the first.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Spread {
     /// `None` once there are more.
+    #[serde(with = "super::bits::some")]
     exact: Option<Vec<f64>>,
+    #[serde(with = "super::bits::one")]
     low: f64,
+    #[serde(with = "super::bits::one")]
     width: f64,
     /// The first and the last bin are open.
     counts: Vec<u64>,
     count: u64,
+    #[serde(with = "super::bits::one")]
     min: f64,
+    #[serde(with = "super::bits::one")]
     max: f64,
 }
 
@@ -38,10 +52,10 @@ pub struct Bin {
     pub count: u64,
 }
 
-impl Spread {
-    /// Of the first numbers; there may be more.
-    pub(super) fn new(first: Vec<f64>) -> Self {
-        let mut sorted = first.clone();
+impl Bins {
+    /// Those that these numbers choose; there may be others.
+    pub(super) fn of(first: &[f64]) -> Self {
+        let mut sorted = first.to_vec();
         sorted.sort_by(f64::total_cmp);
         let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
         let min = sorted.first().copied().unwrap_or(f64::INFINITY);
@@ -55,25 +69,56 @@ impl Spread {
             [min, max]
         };
         let range = to - from;
-        let low = from - MARGIN * range;
-        let width = (1.0 + 2.0 * MARGIN) * range / BINS as f64;
-        let mut spread = Self {
-            exact: None,
-            low,
-            width,
+        Self {
+            low: from - MARGIN * range,
+            width: (1.0 + 2.0 * MARGIN) * range / BINS as f64,
+        }
+    }
+}
+
+impl Spread {
+    /// Of no numbers so far.
+    pub(super) fn new(bins: Bins) -> Self {
+        Self {
+            exact: Some(Vec::new()),
+            low: bins.low,
+            width: bins.width,
             counts: vec![0; BINS + 2],
             count: 0,
-            min,
-            max,
-        };
-        first.iter().for_each(|&value| spread.add(value));
-        spread.exact = Some(first);
-        spread
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+        }
     }
 
-    /// One number more.
-    pub(super) fn add(&mut self, value: f64) {
+    /// Numbers more; those that are the first of all are kept as they are until others follow.
+    pub(super) fn extend(&mut self, numbers: &[f64], first_of_all: bool) {
+        numbers.iter().for_each(|&value| self.count(value));
+        self.exact = first_of_all.then(|| numbers.to_vec());
+    }
+
+    /// What another saw with the same bins.
+    pub(super) fn merge(&mut self, other: &Self) {
+        for (count, other) in self.counts.iter_mut().zip(&other.counts) {
+            *count += other;
+        }
+        self.count += other.count;
+        (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
         self.exact = None;
+    }
+
+    /// Whether its bins are these.
+    pub(super) fn has(&self, bins: Bins) -> bool {
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        same(self.low, bins.low) && same(self.width, bins.width) && self.counts.len() == BINS + 2
+    }
+
+    /// Forgets the numbers as they are.
+    pub(super) fn forget(&mut self) {
+        self.exact = None;
+    }
+
+    /// One number more in its bin.
+    fn count(&mut self, value: f64) {
         self.count += 1;
         (self.min, self.max) = (self.min.min(value), self.max.max(value));
         // Infinite for bins without width: then what is not equal lies in the outer ones.
@@ -96,8 +141,8 @@ impl Spread {
     ///
     /// A value that lies in an outer bin is not known, nor one of no numbers.
     pub(super) fn quantile(&self, share: f64) -> OpenEstimate {
-        if let Some(numbers) = &self.exact {
-            let mut sorted = numbers.clone();
+        if let Some(numbers) = self.as_they_are() {
+            let mut sorted = numbers.to_vec();
             sorted.sort_by(f64::total_cmp);
             return OpenEstimate::of_sorted(&sorted, share);
         }
@@ -110,6 +155,12 @@ impl Spread {
             low: edges(low).map(|[low, _]| low.min(value.unwrap_or(low))),
             high: edges(high).map(|[_, high]| high.max(value.unwrap_or(high))),
         }
+    }
+
+    /// The numbers, where they are there as they are.
+    fn as_they_are(&self) -> Option<&[f64]> {
+        let none = (self.count == 0).then_some([].as_slice());
+        none.or(self.exact.as_deref())
     }
 
     /// Numbers that the one of this rank, from 1, lies between: the edges of its bin.
@@ -145,7 +196,7 @@ impl Spread {
 
     /// Half of the greatest error that bins add to a quantile; 0 while the numbers are there as they are.
     pub(super) fn resolution(&self) -> f64 {
-        if self.exact.is_some() {
+        if self.as_they_are().is_some() {
             0.0
         } else {
             self.width
@@ -172,7 +223,7 @@ impl Spread {
                 bin.count += count;
             }
         };
-        match &self.exact {
+        match self.as_they_are() {
             Some(numbers) => numbers.iter().for_each(|&value| put(value, 1)),
             None => {
                 for (bin, &count) in self
@@ -193,6 +244,12 @@ impl Spread {
 mod tests {
     use super::*;
 
+    fn of(first: &[f64]) -> Spread {
+        let mut spread = Spread::new(Bins::of(first));
+        spread.extend(first, true);
+        spread
+    }
+
     fn counts(histogram: &[Bin]) -> Vec<u64> {
         histogram.iter().map(|bin| bin.count).collect()
     }
@@ -201,7 +258,7 @@ mod tests {
     #[test]
     fn a_histogram_counts_what_lies_between_its_edges() {
         let numbers: Vec<f64> = (0..60).map(|it| f64::from(it * it)).collect();
-        let histogram = Spread::new(numbers.clone()).histogram(7);
+        let histogram = of(&numbers).histogram(7);
         assert_eq!(histogram.len(), 7);
         assert_eq!((histogram[0].low, histogram[6].high), (0.0, 3481.0));
         for (index, bin) in histogram.iter().enumerate() {
@@ -209,8 +266,8 @@ mod tests {
             let inside = |it: &&f64| bin.low <= **it && (**it < bin.high || index == 6);
             assert_eq!(bin.count, numbers.iter().filter(inside).count() as u64);
         }
-        assert_eq!(Spread::new(Vec::new()).histogram(7), []);
-        assert_eq!(counts(&Spread::new(vec![4.0; 5]).histogram(3)), [5, 0, 0]);
+        assert_eq!(of(&[]).histogram(7), []);
+        assert_eq!(counts(&of(&[4.0; 5]).histogram(3)), [5, 0, 0]);
     }
 
     /// Of two thousand numbers that choose the bins one has diverged, and of those that follow one more.
@@ -219,9 +276,9 @@ mod tests {
         let place = |it: u32| (f64::from(it) * 0.618_033_988_749_895).fract();
         let mut first: Vec<f64> = (0..2000).map(place).collect();
         first[7] = 1e230;
-        let mut spread = Spread::new(first);
-        (2000..10_000).for_each(|it| spread.add(place(it)));
-        spread.add(-1e90);
+        let mut spread = of(&first);
+        spread.extend(&(2000..10_000).map(place).collect::<Vec<_>>(), false);
+        spread.extend(&[-1e90], false);
         for (share, known) in [(0.05, 0.05), (0.5, 0.5), (0.995, 0.995)] {
             let found = spread.quantile(share);
             let value = found.value.expect("within the bins");
@@ -237,16 +294,16 @@ mod tests {
     #[test]
     fn a_histogram_of_many_numbers_counts_them_all() {
         let place = |it: u32| (f64::from(it) * 0.618_033_988_749_895).fract();
-        let mut spread = Spread::new((0..100).map(place).collect());
-        (100..10_000).for_each(|it| spread.add(place(it)));
+        let mut spread = of(&(0..100).map(place).collect::<Vec<_>>());
+        spread.extend(&(100..10_000).map(place).collect::<Vec<_>>(), false);
         let even = counts(&spread.histogram(8));
         assert_eq!(even.iter().sum::<u64>(), 10_000);
         assert!(
             even.iter().all(|count| count.abs_diff(1250) <= 10),
             "{even:?}"
         );
-        spread.add(-9.5);
-        spread.add(10.5);
+        spread.extend(&[-9.5], false);
+        spread.extend(&[10.5], false);
         let wide = spread.histogram(20);
         assert_eq!((wide[0].low, wide[19].high), (-9.5, 10.5));
         let wide = counts(&wide);

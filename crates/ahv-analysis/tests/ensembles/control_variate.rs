@@ -72,7 +72,7 @@ fn a_linear_state_is_its_own_companion() {
     for _ in 0..STEPS {
         variance = (1.0 - decay * DT).powi(2) * variance + power * DT;
     }
-    let found = at_the_end(&run(&experiment, 64, 1), MODE)
+    let found = at_the_end(&run(&experiment, 512, 1), MODE)
         .std
         .expect("an estimate");
     let value = found.value.expect("a value");
@@ -144,7 +144,7 @@ fn estimates_are_those_of_the_regression() {
 #[test]
 fn it_narrows_intervals_and_agrees_with_many_members() {
     for scheme in [Scheme::Splitting, Scheme::Heun, Scheme::EulerMaruyama] {
-        let with = run(&beside(scheme), 200, 2);
+        let with = run(&beside(scheme), 600, 2);
         let many = run(
             &Experiment {
                 control_variate: false,
@@ -179,7 +179,7 @@ fn it_narrows_intervals_and_agrees_with_many_members() {
 #[test]
 fn estimates_have_the_same_bits_whatever_the_threads() {
     let told = |threads| {
-        let outcome = run(&beside(Scheme::Splitting), 300, threads);
+        let outcome = run(&beside(Scheme::Splitting), 700, threads);
         let states = outcome.snapshots.into_iter().flat_map(|it| it.states);
         let told = states.map(|it| (it.mean, it.std, it.remains));
         (outcome.digest, told.collect::<Vec<_>>())
@@ -190,7 +190,7 @@ fn estimates_have_the_same_bits_whatever_the_threads() {
         ..beside(Scheme::Splitting)
     };
     assert_eq!(
-        run(&plain, 300, 2).digest,
+        run(&plain, 700, 2).digest,
         told(2).0,
         "members fly as they do"
     );
@@ -201,10 +201,10 @@ fn estimates_have_the_same_bits_whatever_the_threads() {
 fn where_members_are_lost_the_sample_speaks_for_itself() {
     let mut experiment = beside(Scheme::EulerMaruyama);
     experiment.state[1][index("altitude")] = 2e5;
-    let with = run(&experiment, 64, 2);
+    let with = run(&experiment, 512, 2);
     assert!(with.lost > 0);
     experiment.control_variate = false;
-    let without = run(&experiment, 64, 2);
+    let without = run(&experiment, 512, 2);
     for (with, without) in with.snapshots[2]
         .states
         .iter()
@@ -215,11 +215,11 @@ fn where_members_are_lost_the_sample_speaks_for_itself() {
     }
     // And where they are too few.
     assert_eq!(
-        at_the_end(&run(&beside(Scheme::EulerMaruyama), 31, 1), "alpha").remains,
+        at_the_end(&run(&beside(Scheme::EulerMaruyama), 499, 1), "alpha").remains,
         None
     );
     assert!(
-        at_the_end(&run(&beside(Scheme::EulerMaruyama), 32, 1), "alpha")
+        at_the_end(&run(&beside(Scheme::EulerMaruyama), 500, 1), "alpha")
             .remains
             .is_some()
     );

@@ -1,11 +1,12 @@
 //! The engine against the steppers of `ahv-integrate`, member by member, and against laws that are known.
 
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 use crate::common::level;
 use ahv_analysis::erased::{values, vector};
 use ahv_analysis::monte_carlo::{
-    Experiment, MemberRecord, Mode, MonteCarloError, Outcome, QUANTILES, Scheme,
+    BLOCK, Experiment, MemberRecord, Mode, MonteCarloError, Outcome, QUANTILES, Scheme, Tally,
 };
 use ahv_analysis::ordered::Control;
 use ahv_analysis::statistics::{Estimate, OpenEstimate};
@@ -169,6 +170,45 @@ fn threads_and_chunks_change_no_bit() {
         for (a, b) in a.states.iter().zip(&b.states) {
             assert_eq!((a.mean, a.std, a.quantiles), (b.mean, b.std, b.quantiles));
         }
+    }
+}
+
+/// Parts of six blocks, one of which is not whole, with lost members among them.
+#[test]
+fn parts_wherever_they_are_cut_change_no_bit() {
+    let members = 5 * BLOCK + 77;
+    let mut experiment = experiment(Scheme::EulerMaruyama, 1e-2, vec![0, 1, 5]);
+    experiment.state[1][index("alpha")] = 15.0;
+    let whole = run::<Sdcom>(&experiment, members, 2);
+    assert!(whole.lost > 0, "none is lost");
+    let engine = experiment.engine::<Sdcom>().expect("an engine");
+    let control = Control::default();
+    let reference = engine.reference(members, 1, &control).expect("flown");
+    let shown = |it: Outcome| format!("{:?} {:?} {}", it.snapshots, it.losses, it.digest);
+    let whole = shown(whole);
+    for cuts in [vec![], vec![1], vec![3], vec![1, 2, 5], vec![2, 4]] {
+        let ends = cuts.iter().map(|it| it * BLOCK).chain([members]);
+        let mut tally = Tally::new(&experiment, reference.clone());
+        for end in ends {
+            let mut records = Vec::new();
+            let part = engine.part(tally.members()..end, &reference, 2, &control, |_, seen| {
+                records.extend_from_slice(seen);
+            });
+            let part = part.expect("flown");
+            let fits = part.is_of(
+                &experiment,
+                &reference,
+                tally.members(),
+                end - tally.members(),
+            );
+            assert!(fits);
+            tally.join(&records, part);
+        }
+        assert_eq!(
+            shown(tally.outcome(members, Duration::ZERO)),
+            whole,
+            "{cuts:?}"
+        );
     }
 }
 

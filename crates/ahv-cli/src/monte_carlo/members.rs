@@ -14,7 +14,7 @@ use crate::number::cell;
 const MOST_LISTED: u64 = 1_000_000;
 
 /// Intervals that may be left, in the order in which they are watched.
-const INTERVALS: [&str; 2] = ["validity_box", "limits"];
+pub(super) const INTERVALS: [&str; 2] = ["validity_box", "limits"];
 
 /// The list of the members, which is written while they fly.
 pub(super) struct MemberList<'r> {

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 from ._errors import AhvError, AhvWarning, NumericError, RequestError
 
 if TYPE_CHECKING:
+    from ._campaign import campaign
     from ._linear import LinearSystem, Pole, Regulator, Zero, Zeros
     from ._load import generate, load
     from ._model import Model
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 # Where each name comes from: nothing is loaded before it is asked for.
 _HOMES = {
+    "_campaign": ("campaign",),
     "_linear": ("LinearSystem", "Pole", "Regulator", "Zero", "Zeros"),
     "_load": ("generate", "load"),
     "_model": ("Model",),
@@ -58,6 +60,7 @@ __all__ = [
     "Vector",
     "Zero",
     "Zeros",
+    "campaign",
     "generate",
     "load",
     "model",

@@ -6,14 +6,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from operator import add, mul
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ._module import Known
 from ._names import unknown
-
-if TYPE_CHECKING:
-    from ._model import Model
 
 Tree = str | float | list[Any]
 # Results by their name, each a function of the IR and the number of one of its outputs.
@@ -122,11 +120,11 @@ _NUMPY = {
 _CASADI = {"ln": "log", "abs": "fabs", "min": "fmin", "max": "fmax", "powr": "power"}
 
 
-def casadi_function(model: Model, kind: str | None, parameters: bool) -> Any:
+def casadi_function(model: Known, kind: str | None, parameters: bool) -> Any:
     """See `Model.casadi`."""
     import casadi as ca
 
-    source = Source(model._package.documents(), model.name)
+    source = Source(model.module.documents(), model.name)
     # Slopes by parameters are large, and asked for by name.
     kinds = [it for it in source.results() if it != "parameter_jacobian"] if kind is None else [kind]
     x, u, p = (ca.SX.sym(name, len(basis)) for name, basis in zip("xup", _bases(model), strict=True))
@@ -145,11 +143,11 @@ def casadi_function(model: Model, kind: str | None, parameters: bool) -> Any:
     return ca.Function(model.name, [*arguments.values()], results, [*arguments], [*kinds])
 
 
-def jax_function(model: Model, kind: str) -> Callable[..., Any]:
+def jax_function(model: Known, kind: str) -> Callable[..., Any]:
     """See `Model.jax`."""
     import jax.numpy as jnp
 
-    source = Source(model._package.documents(), model.name)
+    source = Source(model.module.documents(), model.name)
     source.result(kind)
     arithmetic = operations(jnp, jnp.where, _NUMPY)
     own = model.parameters.values
@@ -175,11 +173,11 @@ def numpy_result(source: Source, kind: str, leaves: Mapping[str, Any], points: i
     return result
 
 
-def _bases(model: Model) -> tuple[Sequence[str], ...]:
+def _bases(model: Known) -> tuple[Sequence[str], ...]:
     return model.states.names, model.inputs.names, model.parameter_names.names
 
 
-def _leaves(model: Model, vectors: Sequence[Any]) -> dict[str, Any]:
+def _leaves(model: Known, vectors: Sequence[Any]) -> dict[str, Any]:
     """Leaves of the IR by name, of vectors whose components lie in the first dimension."""
     return {
         f"{prefix}.{name}": vector[index]

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._errors import RequestError
+from ._module import Known
 from ._names import Array, Names, Point
-
-if TYPE_CHECKING:
-    from ._model import Model
 
 
 @dataclass(frozen=True)
@@ -64,16 +62,16 @@ class LinearSystem:
     inputs: Names
     outputs: Names
     point: Point
-    model: Model = field(repr=False)
+    model: Known = field(repr=False)
 
     def poles(self) -> list[Pole]:
         """Poles by rising frequency, with their modes."""
-        poles = self.model._vehicle.poles(self.A)
+        poles = self.model.vehicle.poles(self.A)
         return [Pole(complex(*value), mode, share) for value, mode, share in poles]
 
     def zeros(self) -> Zeros:
         """Invariant zeros from the inputs to the outputs."""
-        finite, rank, orders = self.model._package._native.zeros(self.A, self.B, self.C, self.D)
+        finite, rank, orders = self.model.module.native.zeros(self.A, self.B, self.C, self.D)
         return Zeros([Zero(complex(*value), misses) for value, misses in finite], rank, list(orders))
 
     def lqr(self, Q: npt.ArrayLike, R: npt.ArrayLike) -> Regulator:
@@ -97,7 +95,7 @@ class LinearSystem:
             if matrix.ndim != 2:
                 raise RequestError(f"{name}: its shape is {matrix.shape}; it must be a matrix")
             weights.append(matrix)
-        gain, cost, poles, residual = self.model._package._native.regulator(self.A, self.B, *weights)
+        gain, cost, poles, residual = self.model.module.native.regulator(self.A, self.B, *weights)
         return Regulator(
             K=np.array(gain),
             poles=np.array([complex(*pole) for pole in poles]),
@@ -134,7 +132,8 @@ class LinearSystem:
         """Poles and zeros in the plane, and gives the axes of matplotlib."""
         from ._plot import pole_map
 
-        return pole_map(self, axes)
+        poles = [(pole.value, pole.mode) for pole in self.poles()]
+        return pole_map(poles, [zero.value for zero in self.zeros().finite], axes)
 
     def __repr__(self) -> str:
         x, u, y = self.states, self.inputs, self.outputs
@@ -178,7 +177,7 @@ class Regulator:
     data: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, model: Model, data: Mapping[str, Any]) -> Regulator:
+    def of(cls, model: Known, data: Mapping[str, Any]) -> Regulator:
         """From what the command says."""
         inputs = tuple(data["inputs"])
         return cls(

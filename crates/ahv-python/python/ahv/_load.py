@@ -145,7 +145,7 @@ def load(
         from ._interpreted import Interpreted
 
         return Package(Interpreted(text.decode(), [file.read_text(encoding="utf-8") for file in _documents(folder)]))
-    return Package(_module(folder))
+    return Package(loaded(folder))
 
 
 def _make(folder: Path, table: Path, beside: list[Path], build: _Build | None, say: Any) -> None:
@@ -197,7 +197,7 @@ def _compile(new: Path, build: _Build, say: Any) -> None:
     shutil.copy(target / ("debug" if profile == "dev" else profile) / built, new / _file())
 
 
-def _module(folder: Path) -> Any:
+def loaded(folder: Path) -> Any:
     """The compiled module of a folder of the cache."""
     name = f"ahv._loaded_{folder.name}._models"
     if name in sys.modules:

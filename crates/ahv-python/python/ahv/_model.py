@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,11 +14,9 @@ import numpy.typing as npt
 from ._command import Option, warn, words
 from ._errors import RequestError
 from ._linear import LinearSystem, Pole, Regulator, Zeros
+from ._module import Module
 from ._names import Array, Names, Point, Vector, components, unknown
 from ._results import Covariance, Dispersion, MonteCarlo, Rare, Trajectory, Trim
-
-if TYPE_CHECKING:
-    from ._package import Package
 
 Numbers = npt.ArrayLike | Mapping[str, float] | Vector
 
@@ -40,97 +38,97 @@ class Model:
         Where the model is meant to be used.
     """
 
-    def __init__(self, package: Package, name: str, options: Mapping[str, Option]) -> None:
-        self._package = package
+    def __init__(self, module: Module, name: str, options: Mapping[str, Option]) -> None:
+        self.module = module
         self._options = dict(options)
-        self._vehicle = package._native.Vehicle(words({"model": name, **options}))
-        warn(self._vehicle.notes)
+        self.vehicle = module.native.Vehicle(words({"model": name, **options}))
+        warn(self.vehicle.notes)
         self.name = name
 
     def replace(self, **options: Option) -> Model:
         """The same model with another ``table``, ``set``, ``units`` or choice."""
-        return Model(self._package, self.name, {**self._options, **options})
+        return Model(self.module, self.name, {**self._options, **options})
 
     @property
     def title(self) -> str:
         """What it is, in a few words."""
-        return self._vehicle.title
+        return self.vehicle.title
 
     @property
     def unit_system(self) -> str:
         """The system of units in which it is run."""
-        return self._vehicle.unit_system
+        return self.vehicle.unit_system
 
     @property
     def set(self) -> str:
         """Its set of parameters."""
-        return self._vehicle.set
+        return self.vehicle.set
 
     @property
     def sets(self) -> tuple[str, ...]:
         """The sets of parameters of its table."""
-        return tuple(self._vehicle.sets)
+        return tuple(self.vehicle.sets)
 
     @property
     def choices(self) -> dict[str, str | None]:
         """What is chosen; None for a mixture that has no name."""
-        return {name: chosen for name, chosen, _ in self._vehicle.choices}
+        return {name: chosen for name, chosen, _ in self.vehicle.choices}
 
     @property
     def options(self) -> dict[str, tuple[str, ...]]:
         """What there is to choose."""
-        return {name: tuple(options) for name, _, options in self._vehicle.choices}
+        return {name: tuple(options) for name, _, options in self.vehicle.choices}
 
     @property
     def given(self) -> tuple[str, ...]:
         """What is given of a steady state."""
-        return tuple(self._vehicle.given)
+        return tuple(self.vehicle.given)
 
     @cached_property
     def states(self) -> Names:
         """Names and units of x."""
-        return _names(self._vehicle.states)
+        return _names(self.vehicle.states)
 
     @cached_property
     def inputs(self) -> Names:
         """Names and units of u."""
-        return _names(self._vehicle.inputs)
+        return _names(self.vehicle.inputs)
 
     @cached_property
     def outputs(self) -> Names:
         """Names and units of the quantities that people look at."""
-        return _names(self._vehicle.outputs)
+        return _names(self.vehicle.outputs)
 
     @cached_property
     def increments(self) -> Names:
         """Names and units of the Wiener processes."""
-        return _names(self._vehicle.increments)
+        return _names(self.vehicle.increments)
 
     @cached_property
     def parameter_names(self) -> Names:
         """Names and units of p."""
-        return _names(self._vehicle.parameters)
+        return _names(self.vehicle.parameters)
 
     @cached_property
     def parameters(self) -> Vector:
         """Values of p."""
-        return self.parameter_names.vector(self._vehicle.parameter_values)
+        return self.parameter_names.vector(self.vehicle.parameter_values)
 
     @cached_property
     def uncertainty(self) -> Vector:
         """Relative uncertainties of p."""
         basis = Names(self.parameter_names.names, ("1",) * len(self.parameter_names))
-        return basis.vector(self._vehicle.uncertainty)
+        return basis.vector(self.vehicle.uncertainty)
 
     @property
     def state_bounds(self) -> dict[str, tuple[float, float]]:
         """The validity box of x."""
-        return dict(zip(self.states.names, self._vehicle.state_bounds, strict=True))
+        return dict(zip(self.states.names, self.vehicle.state_bounds, strict=True))
 
     @property
     def input_bounds(self) -> dict[str, tuple[float, float]]:
         """The validity box of u."""
-        return dict(zip(self.inputs.names, self._vehicle.input_bounds, strict=True))
+        return dict(zip(self.inputs.names, self.vehicle.input_bounds, strict=True))
 
     # Functions of whole arrays.
 
@@ -201,7 +199,7 @@ class Model:
             return out
         flat = out.reshape(-1, int(np.prod(shape)))
         x, u, p = (_flat(it, leading) for it in given)
-        self._vehicle.evaluate(kind, x, u, p, flat)
+        self.vehicle.evaluate(kind, x, u, p, flat)
         return out
 
     # Analyses.
@@ -256,7 +254,7 @@ class Model:
         if not isinstance(point, Point):
             raise RequestError("u: a state needs an input beside it")
         x, held = components("x", point.state, self.states), components("u", point.input, self.inputs)
-        matrices, own, seen = self._vehicle.linearize(x, held, list(inputs), list(outputs))
+        matrices, own, seen = self.vehicle.linearize(x, held, list(inputs), list(outputs))
         units = {**self._units(), **dict(zip(self.outputs.names, self.outputs.units, strict=True))}
         shapes = [(len(x), len(x)), (len(x), len(own)), (len(seen), len(x)), (len(seen), len(own))]
         a, b, c, d = (np.array(it).reshape(shape) for it, shape in zip(matrices, shapes, strict=True))
@@ -397,8 +395,8 @@ class Model:
         both = (self.states, self.inputs)
         return {name: unit for basis in both for name, unit in zip(basis.names, basis.units, strict=True)}
 
-    def _run(self, command: str, options: Mapping[str, Option]) -> dict[str, Any]:
-        """A command over this model; numbers of its vectors get their units."""
+    def flags(self, options: Mapping[str, Option]) -> dict[str, Option]:
+        """Options of a command over this model as its flags; numbers of its vectors get their units."""
         units = {**self._units(), **dict(zip(self.outputs.names, self.outputs.units, strict=True))}
         flags: dict[str, Option] = {}
         for name, value in options.items():
@@ -408,7 +406,11 @@ class Model:
                 flags[name] = {key: _with_unit(name, key, it, units) for key, it in value.items()}
             else:
                 flags[name] = value
-        return self._package.command(command, model=self.name, **self._options, **flags)
+        return {"model": self.name, **self._options, **flags}
+
+    def _run(self, command: str, options: Mapping[str, Option]) -> dict[str, Any]:
+        """What a command over this model says."""
+        return self.module.command(command, **self.flags(options))
 
     def __repr__(self) -> str:
         chosen = "".join(f", {name} {value or 'of the table'}" for name, value in self.choices.items())

@@ -1,3 +1,5 @@
+from os import PathLike
+
 from numpy import float64
 from numpy.typing import NDArray
 
@@ -15,6 +17,10 @@ def zeros(
 def regulator(
     a: NDArray[float64], b: NDArray[float64], q: NDArray[float64], r: NDArray[float64]
 ) -> tuple[_Rows, _Rows, list[_Pair], float]: ...
+
+class CampaignLock:
+    def __new__(cls, folder: str | PathLike[str]) -> CampaignLock: ...
+    def release(self) -> None: ...
 
 class Vehicle:
     def __new__(cls, words: list[str]) -> Vehicle: ...

@@ -2,37 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from functools import cache
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
-from ._command import Option, told, words
+from ._command import Option
+from ._model import Model
+from ._module import Module, Native
 from ._names import unknown
-
-if TYPE_CHECKING:
-    from ._model import Model
-    from ._models import Vehicle
-    from ._names import Array
-
-
-class Native(Protocol):
-    """A compiled module of models."""
-
-    Vehicle: type[Vehicle]
-
-    def models(self) -> list[tuple[str, str]]: ...
-    def command(self, words: list[str]) -> tuple[str, list[str]]: ...
-    def documents(self) -> list[str]: ...
-    def zeros(self, a: Array, b: Array, c: Array, d: Array) -> Any: ...
-    def regulator(self, a: Array, b: Array, q: Array, r: Array) -> Any: ...
 
 
 class Package:
     """Compiled models of some tables, by name: ``package.model("dcom")``, ``package.dcom``."""
 
     def __init__(self, native: Native) -> None:
-        self._native = native
+        self._module = Module(native)
         self._titles = dict(native.models())
 
     def models(self) -> dict[str, str]:
@@ -68,23 +52,14 @@ class Package:
         RequestError
             There is no such model, set, choice or unit, or the table has a fault.
         """
-        from ._model import Model
-
         if name not in self._titles:
             raise unknown("model", name, tuple(self._titles))
         options: dict[str, Option] = {"table": table, "set": set, "units": units, **choices}
-        return Model(self, name, {key: value for key, value in options.items() if value is not None})
+        return Model(self._module, name, {key: value for key, value in options.items() if value is not None})
 
     def command(self, command: str, **options: Option) -> dict[str, Any]:
         """What a command of ``ahv`` prints with ``--json``, by its flags: ``command("reduce", runs=100)``."""
-        text = told(self._native.command, [command, *words(options), "--json"])
-        outcome: dict[str, Any] = json.loads(text)
-        return outcome
-
-    @cache  # noqa: B019 - a package lives as long as the program
-    def documents(self) -> tuple[dict[str, Any], ...]:
-        """The IR of the tables: quantities, functions and names of the models, without values."""
-        return tuple(json.loads(text) for text in self._native.documents())
+        return self._module.command(command, **options)
 
     def __getattr__(self, name: str) -> Model:
         if name.startswith("_") or name not in self._titles:

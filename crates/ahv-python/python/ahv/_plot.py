@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from ._names import Array, Names
-
-if TYPE_CHECKING:
-    from ._linear import LinearSystem
 
 _COLOURS = ("#1f5f99", "#c2452d", "#3a7d44", "#8a5a9e", "#b8860b", "#3d8f8f", "#7f4f3a")
 
@@ -45,20 +42,18 @@ def lines(time: Array, columns: Mapping[str, tuple[Array, Array | None]], basis:
     return grid[:, 0]
 
 
-def pole_map(system: LinearSystem, axes: Any = None) -> Any:
-    """Poles by mode, and zeros."""
+def pole_map(poles: Sequence[tuple[complex, str | None]], zeros: Sequence[complex], axes: Any = None) -> Any:
+    """Poles with their modes, and zeros."""
     import matplotlib.pyplot as plt
 
     if axes is None:
         axes = plt.subplots(figsize=(5.0, 4.2))[1]
-    poles = system.poles()
-    for index, mode in enumerate(dict.fromkeys(pole.mode for pole in poles)):
-        values = np.array([pole.value for pole in poles if pole.mode == mode])
+    for index, mode in enumerate(dict.fromkeys(mode for _, mode in poles)):
+        values = np.array([value for value, own in poles if own == mode])
         colour = _COLOURS[index % len(_COLOURS)]
         axes.plot(values.real, values.imag, "x", color=colour, markersize=6, label=mode or "other")
-    zeros = np.array([zero.value for zero in system.zeros().finite])
-    if zeros.size:
-        axes.plot(zeros.real, zeros.imag, "o", color="#555555", markersize=5, fillstyle="none", label="zeros")
+    if zeros:
+        axes.plot(np.real(zeros), np.imag(zeros), "o", color="#555555", markersize=5, fillstyle="none", label="zeros")
     axes.axvline(0.0, color="#999999", linewidth=0.8)
     axes.set_xlabel("real part, 1/s", fontsize=8)
     axes.set_ylabel("imaginary part, rad/s", fontsize=8)

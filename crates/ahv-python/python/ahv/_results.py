@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 
+from ._module import Known
 from ._names import Array, Names, Point, Vector
-
-if TYPE_CHECKING:
-    from ._model import Model
 
 
 def _vector(values: Mapping[str, float], basis: Names) -> Vector:
@@ -50,7 +48,7 @@ class Trim:
     data: Mapping[str, Any] = field(repr=False)
 
     @classmethod
-    def of(cls, model: Model, data: Mapping[str, Any]) -> Self:
+    def of(cls, model: Known, data: Mapping[str, Any]) -> Self:
         """From what the command says."""
         return cls(
             state=_vector(data["state"], model.states),
@@ -140,7 +138,7 @@ class Report:
     states: Names
 
     @classmethod
-    def of(cls, model: Model, data: Mapping[str, Any]) -> Self:
+    def of(cls, model: Known, data: Mapping[str, Any]) -> Self:
         """From what the command says."""
         return cls(data, model.states)
 

@@ -4,6 +4,8 @@
 //! machine for themselves.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "parquet")]
+mod campaign;
 mod closed_loop;
 mod command;
 mod files;
