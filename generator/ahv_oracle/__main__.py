@@ -20,6 +20,7 @@ from .evaluate import Oracle
 from .first_principles import first_principles_lines
 from .flights import flight_lines
 from .gas_dynamics import gas_dynamics_lines
+from .least_squares import least_squares_lines
 from .model import MODELS
 from .normals import normal_lines
 from .riccati import riccati_lines
@@ -35,6 +36,7 @@ ALONE = {
     "transcendental": (transcendental_lines, "values of tangent, logarithm, powers and inverses"),
     "normals": (normal_lines, "keyed normal numbers"),
     "gas_dynamics": (gas_dynamics_lines, "shocks, expansions, heat addition and ducts"),
+    "least_squares": (least_squares_lines, "values of least squares"),
     "fpm": (first_principles_lines, "loads of the first-principles model"),
 }
 """What takes no table: its lines, and what they are."""

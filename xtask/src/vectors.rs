@@ -67,6 +67,7 @@ pub(crate) fn run() -> Result<(), String> {
         "normals",
         "gas_dynamics",
         "fpm",
+        "least_squares",
     ] {
         let mut alone = shell::program(&python);
         let out = format!("tests/vectors/{name}.txt");

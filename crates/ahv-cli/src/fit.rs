@@ -28,7 +28,7 @@ use report::Report;
 /// from a model by --from. The structure is a table: its monomials are fitted, the rest of it stays. Prints for each quantity R²,
 /// residuals, cross-validation, condition, and coefficients with their errors. docs/fit.md says what they are.
 #[derive(Args)]
-#[command(group(ArgGroup::new("samples").required(true).args(["data", "from"])))]
+#[command(group(ArgGroup::new("origin").required(true).args(["data", "from"])))]
 pub(crate) struct Arguments {
     /// Samples: CSV, or Parquet where the name ends so
     #[arg(long, value_name = "FILE")]

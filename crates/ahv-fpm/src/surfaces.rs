@@ -24,10 +24,14 @@ pub enum Surface {
     Inlet,
     /// Plane where the stream leaves the engine.
     Nozzle,
+    /// Lower face of a canard ([`crate::canard`]), which is no part of the flow's loads.
+    CanardLower,
+    /// Upper face of a canard.
+    CanardUpper,
 }
 
 impl Surface {
-    /// All of them.
+    /// Those of a flow's loads.
     pub const ALL: [Self; 8] = [
         Self::Forebody,
         Self::Upper,
@@ -50,6 +54,8 @@ impl Surface {
             Self::ElevatorUpper => "elevator, upper face",
             Self::Inlet => "inlet",
             Self::Nozzle => "nozzle",
+            Self::CanardLower => "canard, lower face",
+            Self::CanardUpper => "canard, upper face",
         }
     }
 }
