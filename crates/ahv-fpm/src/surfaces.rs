@@ -132,7 +132,7 @@ pub fn plate<R: Real>(gamma: R, mach: R, incidence: R) -> [Turned<R>; 2] {
 }
 
 /// Whether no lane is below 0. Where numbers do not say whether they are finite, this holds for a number and its negative.
-fn none_below<R: Real>(value: R) -> bool {
+pub(crate) fn none_below<R: Real>(value: R) -> bool {
     let nothing = R::from_f64(f64::NAN);
     value.select(R::ZERO, nothing, R::ZERO).is_finite()
 }

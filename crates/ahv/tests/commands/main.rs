@@ -7,6 +7,7 @@
 mod closed_loop;
 mod command;
 mod files;
+mod fit;
 mod forces;
 mod linearize;
 mod monte_carlo;
