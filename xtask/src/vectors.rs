@@ -68,6 +68,7 @@ pub(crate) fn run() -> Result<(), String> {
         "gas_dynamics",
         "fpm",
         "least_squares",
+        "fit_samples",
     ] {
         let mut alone = shell::program(&python);
         let out = format!("tests/vectors/{name}.txt");
