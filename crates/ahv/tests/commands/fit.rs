@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::command::{fail, json, number, text};
+use crate::command::{ahv, fail, json, number, stderr, text};
 
 const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../generator/tables");
 
@@ -125,19 +125,19 @@ fn samples_of_a_table_give_the_table_back() {
     );
     // The models of this program take it.
     text(&["trim", "--model", "com_rigid", "--table", shown(&out)]);
-    fail(
-        &[
-            "fit",
-            "--data",
-            shown(&data),
-            "--structure",
-            &com,
-            "--out",
-            "/dev/null",
-        ],
-        2,
-        &["not a regular file"],
-    );
+    // A table that cannot be written fails the command; what was found is printed.
+    let words = [
+        "fit",
+        "--data",
+        shown(&data),
+        "--structure",
+        &com,
+        "--out",
+        "/dev/null",
+    ];
+    let refused = ahv(&words);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("/dev/null: it exists and is not a regular file"));
 }
 
 #[test]
