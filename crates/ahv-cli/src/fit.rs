@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use ahv_table::Text;
 use clap::{ArgGroup, Args};
 
-use crate::failure::{Failure, all, complain, print};
+use crate::failure::{Failure, complain, print};
 use crate::{names, output, tables};
 
 use drawn::Draw;
@@ -142,16 +142,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some((_, text)) = &made {
         warn_of_faults(text, path)?;
     }
-    let written = made.map_or(Ok(()), |(out, text)| output::write(out, text));
-    let drawn = arguments
-        .picture
-        .as_ref()
-        .map_or(Ok(()), |path| output::picture(path, report.figure()));
-    let printed = match arguments.json {
+    // A file that cannot be written is a bad request: then nothing is printed.
+    made.map_or(Ok(()), |(out, text)| output::write(out, text))?;
+    let drawn = arguments.picture.as_ref();
+    drawn.map_or(Ok(()), |path| output::picture(path, report.figure()))?;
+    match arguments.json {
         true => output::print_json(&report),
         false => print(&report.text()),
-    };
-    all([written, drawn, printed])
+    }
 }
 
 /// Says what the models of this program find wrong with a fitted table: a monomial that they do not have, a sign.
