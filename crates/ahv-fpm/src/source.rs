@@ -21,7 +21,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const BOX: [Variable; 6] = [
     variable("velocity", "ft/s", 7500.0, 7900.0),
     variable("altitude", "ft", 84_000.0, 86_000.0),
-    variable("alpha", "rad", -1.0 * DEGREE, 5.0 * DEGREE),
+    variable("alpha", "rad", -DEGREE, 5.0 * DEGREE),
     variable("phi", "1", 0.1, 0.5),
     variable("delta_e", "rad", -15.0 * DEGREE, 15.0 * DEGREE),
     variable("delta_c", "rad", -15.0 * DEGREE, 15.0 * DEGREE),
