@@ -22,7 +22,9 @@ const SECTIONS: [&str; 6] = [
     "environment",
 ];
 /// Parameters that may be of any sign. All others must be positive.
-const OF_ANY_SIGN: [&str; 7] = ["tau_u", "tau_l", "tau_t", "x_e", "z_el", "z_e", "lapse_0"];
+const OF_ANY_SIGN: [&str; 9] = [
+    "tau_u", "tau_l", "tau_t", "x_e", "z_el", "z_e", "x_c", "z_c", "lapse_0",
+];
 
 type Failure = Box<dyn Error>;
 

@@ -6,7 +6,8 @@ solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`
 logarithm, powers and inverses, ``python -m ahv_oracle normals --out F`` keyed normal numbers,
 ``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there),
 ``python -m ahv_oracle answers --tables ../examples --out F`` what the programs of the examples must answer.
-``gas_dynamics`` and ``fpm`` those of the first-principles model.
+``gas_dynamics`` and ``fpm`` those of the first-principles model, ``least_squares`` and
+``fit_samples`` those of fits.
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
 """
 
@@ -18,8 +19,10 @@ from .answers import answer_lines
 from .elementary import elementary_lines
 from .evaluate import Oracle
 from .first_principles import first_principles_lines
+from .fit_samples import fit_sample_lines
 from .flights import flight_lines
 from .gas_dynamics import gas_dynamics_lines
+from .least_squares import least_squares_lines
 from .model import MODELS
 from .normals import normal_lines
 from .riccati import riccati_lines
@@ -35,6 +38,8 @@ ALONE = {
     "transcendental": (transcendental_lines, "values of tangent, logarithm, powers and inverses"),
     "normals": (normal_lines, "keyed normal numbers"),
     "gas_dynamics": (gas_dynamics_lines, "shocks, expansions, heat addition and ducts"),
+    "least_squares": (least_squares_lines, "values of least squares"),
+    "fit_samples": (fit_sample_lines, "coefficients from geometry"),
     "fpm": (first_principles_lines, "loads of the first-principles model"),
 }
 """What takes no table: its lines, and what they are."""

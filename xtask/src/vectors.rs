@@ -67,6 +67,8 @@ pub(crate) fn run() -> Result<(), String> {
         "normals",
         "gas_dynamics",
         "fpm",
+        "least_squares",
+        "fit_samples",
     ] {
         let mut alone = shell::program(&python);
         let out = format!("tests/vectors/{name}.txt");

@@ -302,7 +302,9 @@ impl Vehicle {
     pub(crate) fn trim(&self, flight: &SteadyState) -> Result<Trim<Vec<f64>, Vec<f64>>, Failure> {
         let trim = self.model.trim(&self.parameters, flight).map_err(|error| {
             let why = self.no_trim(&error);
-            Failure::Numeric(format!("{}: {why} ({})", self.name(), self.at(flight)))
+            let fault = self.fault_at_start(&error, flight);
+            let at = self.at(flight);
+            Failure::Numeric(format!("{}: {why}{fault} ({at})", self.name()))
         })?;
         self.warn_outside(&trim.state, &trim.input);
         Ok(trim)
@@ -472,6 +474,26 @@ impl Vehicle {
             self.blocking(error).join(" and "),
             nearest.worst
         )
+    }
+
+    /// What the model says of the point where a trim starts, if it has no forces there; else nothing.
+    pub(crate) fn fault_at_start(&self, error: &TrimError, flight: &SteadyState) -> String {
+        if !matches!(error, TrimError::NonFinite { .. }) {
+            return String::new();
+        }
+        let value = |name: &&'static str| {
+            let given = flight.given().find(|(known, _)| known == name);
+            given.map_or_else(|| flight.input_value(name), |it| it.1)
+        };
+        let [x, u] =
+            [self.states, self.inputs].map(|it| it.names.iter().map(value).collect::<Vec<f64>>());
+        self.fault_after(&x, &u)
+    }
+
+    /// `: ` and why the model has no forces at a point; nothing if it has some.
+    pub(crate) fn fault_after(&self, x: &[f64], u: &[f64]) -> String {
+        let fault = self.model.fault(&self.parameters, x, u);
+        fault.map_or_else(String::new, |fault| format!(": {fault}"))
     }
 
     /// The bounds that block a trim, for a person; none if it is not for bounds.

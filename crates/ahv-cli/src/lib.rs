@@ -32,6 +32,8 @@ mod diff;
 mod disperse;
 pub mod embedded;
 pub mod failure;
+#[cfg(feature = "generate")]
+pub mod fit;
 mod flight_condition;
 mod flights;
 mod forces;
@@ -90,6 +92,8 @@ enum Command {
     Table(tables::Arguments),
     #[cfg(feature = "generate")]
     Diff(diff::Arguments),
+    #[cfg(feature = "generate")]
+    Fit(Box<fit::Arguments>),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -154,6 +158,8 @@ pub fn run_line<L: ModelList>(
         Ok(Asked::General(Command::Table(arguments))) => listening(|| tables::run(&arguments)),
         #[cfg(feature = "generate")]
         Ok(Asked::General(Command::Diff(arguments))) => listening(|| done(diff::run(&arguments))),
+        #[cfg(feature = "generate")]
+        Ok(Asked::General(Command::Fit(arguments))) => listening(|| done(fit::run(&arguments))),
         Ok(Asked::General(Command::Model(command))) => listening(|| done(command.run())),
         Ok(Asked::Extra(extra, matches)) => listening(|| done((extra.run)(&matches))),
     }

@@ -272,6 +272,25 @@ pub(crate) fn known(table: &Text, path: &Path) -> Result<Known, Failure> {
     }
 }
 
+/// What a table without fault may hold.
+///
+/// # Errors
+///
+/// [`Failure::Request`] with the faults of the table, a line each.
+pub(crate) fn sound(table: &Text, path: &Path) -> Result<Subject, Failure> {
+    let Known { subject, faults } = known(table, path)?;
+    if faults.is_empty() {
+        return Ok(subject);
+    }
+    let reviewed = Reviewed {
+        file: names::printable(&path.display().to_string()),
+        text: table.raw().to_owned(),
+        findings: faults,
+    };
+    let rendered = ahv_review::rendered(&[reviewed], false);
+    Err(Failure::Request(rendered.trim_end().to_owned()))
+}
+
 fn finding(table: &Text, fault: &FamilyFault) -> Finding {
     let help = fault.help.as_deref().unwrap_or_default();
     let place = (fault.path.as_slice(), fault.part);

@@ -75,8 +75,9 @@ fn at_a_point(arguments: &Arguments, vehicle: &Vehicle) -> Result<(), Failure> {
         Ok(_) => Ok(()),
         Err(error) => {
             let (why, place) = (vehicle.no_trim(&error), vehicle.at(&flight));
+            let fault = vehicle.fault_at_start(&error, &flight);
             Err(Failure::Numeric(format!(
-                "{}: {why} ({place})",
+                "{}: {why}{fault} ({place})",
                 vehicle.name()
             )))
         }

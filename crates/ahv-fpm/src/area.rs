@@ -2,6 +2,8 @@
 
 use ahv_core::Real;
 
+use crate::surfaces::none_below;
+
 /// A supersonic stream at the other end of a duct; ratios are that end over this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaChange<R> {
@@ -18,8 +20,11 @@ pub struct AreaChange<R> {
 /// What counts as sonic: there a step has no slope.
 const LEAST: f64 = 1e-12;
 
-/// Halley's steps from a start that is within 0.6 of ln M: to rounding.
+/// Halley's steps at most, from a start that is within 0.6 of ln M: to rounding.
 const STEPS: usize = 3;
+
+/// A step below this is the last: the error that it leaves is of the order of its cube.
+const LAST_STEP: f64 = 1e-7;
 
 /// The logarithm of A/A* at a Mach number: NACA report 1135, (80).
 pub fn log_area_ratio<R: Real>(gamma: R, mach: R) -> R {
@@ -56,11 +61,17 @@ impl<R: Real> Duct<R> {
         let (up, down) = ((gamma + R::ONE) * R::HALF, (gamma - R::ONE) * R::HALF);
         let exponent = up / (gamma - R::ONE);
         let wanted = log_area_ratio(gamma, mach) + self.log_ratio;
-        let aim = wanted.max(R::from_f64(LEAST));
+        let sonic = R::from_f64(LEAST);
+        let ahead = R::ONE + down * mach * mach;
+        let aim = wanted.max(sonic);
         // u = ln M. One start is near at M = 1 and one far from it; both are above the root.
         let near = (up * aim).sqrt();
         let far = (aim + self.far) / (R::TWO * exponent - R::ONE);
-        let mut u = near.min(far);
+        // A third is along the tangent at this end of the duct, which lies above the curve where the duct widens.
+        let rise = (mach * mach - R::ONE).max(sonic) / ahead;
+        let along = mach.ln() + self.log_ratio / rise;
+        let along = self.log_ratio.select(R::ZERO, near, along);
+        let mut u = near.min(far).min(along);
         for _ in 0..STEPS {
             let mach_2 = (u + u).exp();
             let stagnation = R::ONE + down * mach_2;
@@ -69,9 +80,12 @@ impl<R: Real> Duct<R> {
             // Half the second derivative over the first.
             let bend = mach_2 * up / (stagnation * (mach_2 - R::ONE));
             u = u - step / (R::ONE - step * bend);
+            if is_below(step, LAST_STEP) {
+                break;
+            }
         }
         let end = u.exp();
-        let temperature = (R::ONE + down * mach * mach) / (R::ONE + down * end * end);
+        let temperature = ahead / (R::ONE + down * end * end);
         AreaChange {
             mach: end,
             // The mass that enters leaves.
@@ -80,6 +94,12 @@ impl<R: Real> Duct<R> {
             margin: wanted,
         }
     }
+}
+
+/// Whether the magnitudes of all lanes are below a bound.
+pub(crate) fn is_below<R: Real>(value: R, bound: f64) -> bool {
+    let bound = R::from_f64(bound);
+    none_below(bound - value) && none_below(bound + value)
 }
 
 impl<R> Duct<R> {

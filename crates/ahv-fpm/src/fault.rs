@@ -194,7 +194,7 @@ fn misses(value: f64, bound: f64) -> bool {
     value <= bound || value.is_nan()
 }
 
-fn of_turn(gamma: f64, surface: Surface, flow: &Turned<f64>) -> Option<Fault> {
+pub(crate) fn of_turn(gamma: f64, surface: Surface, flow: &Turned<f64>) -> Option<Fault> {
     if flow.margin > 0.0 {
         return None;
     }

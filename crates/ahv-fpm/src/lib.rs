@@ -3,7 +3,8 @@
 //! Every number comes from the geometry table `vehicle.toml`; what is assumed beside it stands in `docs/first-principles.md`. The flow is
 //! computed surface by surface from shocks, expansions, heat addition and area changes, a file each. Two clamped beams bend
 //! under the pressures. [`Model`] is an [`ahv_core::GeneratedModel`] like those that are generated, so that it trims, linearises and
-//! flies; derivatives come from [`ahv_core::Dual`]. It may depend on `ahv-core` and draws with `ahv-plot`; it knows no other model.
+//! flies; derivatives come from [`ahv_core::Dual`]. It may depend on `ahv-core`, draws with `ahv-plot` and gives `ahv-fit` samples; of other models it
+//! knows the curve fits that it has samples for ([`SOURCE`]).
 //! Start with [`Model::forces`] and `flow.rs`.
 //!
 //! ```
@@ -28,16 +29,19 @@ pub mod area;
 pub mod atmosphere;
 mod batch;
 pub mod beam;
+pub mod canard;
 mod description;
 pub mod drawing;
 mod fault;
 mod flow;
+pub mod free;
 mod model;
 pub mod oblique_shock;
 mod outputs;
 pub mod prandtl_meyer;
 pub mod propulsion;
 pub mod rayleigh;
+mod source;
 pub mod structure;
 pub mod surfaces;
 mod table;
@@ -47,5 +51,6 @@ pub use fault::Fault;
 pub use flow::Flow;
 pub use model::{INPUT_BOUNDS, Input, Model, Noise, STATE_BOUNDS, State};
 pub use outputs::Outputs;
+pub use source::SOURCE;
 pub use surfaces::{Load, Surface};
 pub use table::{NOMINAL, PROVENANCE, Parameters, TABLE};

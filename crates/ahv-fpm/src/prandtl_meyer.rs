@@ -2,6 +2,8 @@
 
 use ahv_core::Real;
 
+use crate::area::is_below;
+
 /// An expansion; ratios are behind over ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expansion<R> {
@@ -15,8 +17,11 @@ pub struct Expansion<R> {
     pub margin: R,
 }
 
-/// Halley's steps from Hall's start, which is within 6e-4 for γ = 1.4 and 0.2 for 1.2 to 1.67: to rounding.
+/// Halley's steps at most, from Hall's start, which is within 6e-4 for γ = 1.4 and 0.2 for 1.2 to 1.67: to rounding.
 const STEPS: usize = 3;
+
+/// A step of √(M² − 1) below this share of it is the last: the error that it leaves is of the order of its cube.
+const LAST_STEP: f64 = 1e-7;
 
 /// Hall's rational fit of the Mach number over (ν/ν of vacuum)^(2/3): "Inversion of the Prandtl–Meyer relation", 1975.
 const NUMERATOR: [f64; 3] = [1.3604, 0.0962, -0.5127];
@@ -62,7 +67,11 @@ pub fn expansion<R: Real>(gamma: R, mach: R, turn: R) -> Expansion<R> {
         let step = (angle(reach, y) - wanted) / by_y;
         // Half the second derivative over the first.
         let bend = y.recip() - y / (R::ONE + y_2) - y / (reach_2 + y_2);
+        let before = y;
         y = y - step / (R::ONE - step * bend);
+        if is_below(step / before, LAST_STEP) {
+            break;
+        }
     }
     let behind_2 = R::ONE + y * y;
     let temperature = (R::ONE + down * mach_2) / (R::ONE + down * behind_2);

@@ -24,10 +24,14 @@ pub enum Surface {
     Inlet,
     /// Plane where the stream leaves the engine.
     Nozzle,
+    /// Lower face of a canard ([`crate::canard`]), which is no part of the flow's loads.
+    CanardLower,
+    /// Upper face of a canard.
+    CanardUpper,
 }
 
 impl Surface {
-    /// All of them.
+    /// Those of a flow's loads.
     pub const ALL: [Self; 8] = [
         Self::Forebody,
         Self::Upper,
@@ -50,6 +54,8 @@ impl Surface {
             Self::ElevatorUpper => "elevator, upper face",
             Self::Inlet => "inlet",
             Self::Nozzle => "nozzle",
+            Self::CanardLower => "canard, lower face",
+            Self::CanardUpper => "canard, upper face",
         }
     }
 }
@@ -126,7 +132,7 @@ pub fn plate<R: Real>(gamma: R, mach: R, incidence: R) -> [Turned<R>; 2] {
 }
 
 /// Whether no lane is below 0. Where numbers do not say whether they are finite, this holds for a number and its negative.
-fn none_below<R: Real>(value: R) -> bool {
+pub(crate) fn none_below<R: Real>(value: R) -> bool {
     let nothing = R::from_f64(f64::NAN);
     value.select(R::ZERO, nothing, R::ZERO).is_finite()
 }

@@ -16,5 +16,7 @@ impl ModelList for Models {
 }
 
 fn main() -> ExitCode {
+    #[cfg(feature = "generate")]
+    ahv_cli::fit::offer(ahv_fpm::SOURCE);
     ahv_cli::run::<Models>(&ahv_paper::commands::all())
 }

@@ -79,7 +79,7 @@ impl Flight<'_> {
                     fly(&mut run, &u, next, &mut |passage| passages.push(passage))
                 }
             };
-            moved.map_err(|failure| self.broken(&failure, &run, &arguments.out))?;
+            moved.map_err(|failure| self.broken(&failure, &run, &u, &arguments.out))?;
         }
         drop(progress);
         table.finish()?;
@@ -124,11 +124,13 @@ impl Flight<'_> {
         &self,
         failure: &integrate::Failure,
         last_good: &integrate::Progress<Vec<f64>>,
+        u: &[f64],
         out: &std::path::Path,
     ) -> Failure {
         Failure::Numeric(format!(
-            "{}: {failure}; {} was not written\nthe last good state, at {} s:\n{}",
+            "{}: {failure}{}; {} was not written\nthe last good state, at {} s:\n{}",
             self.vehicle.name(),
+            self.vehicle.fault_after(&last_good.state, u),
             out.display(),
             Shown(last_good.time),
             self.vehicle.states.describe(&last_good.state)

@@ -10,7 +10,9 @@ use clap::Args;
 use serde::Serialize;
 
 use super::number::significant;
-use crate::compare::{COMPARED, Deviation, ELEVATORS, Point, RATIOS, deviations, points};
+use crate::compare::{
+    COMPARED, Deviation, ELEVATORS, Point, RATIOS, VARIATIONS, deviations, points,
+};
 
 /// Compares the first-principles model with the published curve fits of the COM, over the box of the fits.
 ///
@@ -21,6 +23,10 @@ pub(crate) struct Arguments {
     /// Folder for compare.csv and compare.svg
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+
+    /// Print what changes of the geometry table do to the deviations, in the place of the comparison
+    #[arg(long, conflicts_with_all = ["out", "json"])]
+    variations: bool,
 
     /// Print points and deviations as JSON
     #[arg(long)]
@@ -41,6 +47,9 @@ struct Json<'a> {
 ///
 /// [`Failure::Request`] for a file that cannot be written, [`Failure::Numeric`] where the model has no flow.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.variations {
+        return print(&variations()?);
+    }
     let folder = arguments.out.as_deref();
     if let Some(folder) = folder {
         output::folder(folder)?;
@@ -63,6 +72,28 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::picture(&folder.join("compare.svg"), figure(&points))
     });
     all([written, printed, drawn])
+}
+
+/// The deviations with each change, in % of the root mean square of COM; in brackets without their mean.
+fn variations() -> Result<String, Failure> {
+    let heading = COMPARED.map(|(name, _)| format!("{name:>20}")).concat();
+    let lines = VARIATIONS.iter().map(|it| {
+        let points = it
+            .points()
+            .map_err(|fault| Failure::Numeric(format!("fpm, {}: {fault}", it.name)))?;
+        let cells = deviations(&points).map(|it| {
+            let percent = |value: f64| 100.0 * value / it.size;
+            let cell = format!("{:.0} ({:.0})", percent(it.difference), percent(it.rest));
+            format!("{cell:>20}")
+        });
+        Ok(format!("{:<42}{}", it.name, cells.concat()))
+    });
+    let lines = lines.collect::<Result<Vec<String>, Failure>>()?;
+    Ok(format!(
+        "root mean square of fpm less com in % of com; in brackets without the mean\n{:<42}{heading}\n{}",
+        "",
+        lines.join("\n")
+    ))
 }
 
 fn text(found: &[Deviation; 3], count: usize) -> String {

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::command::{fail, json, number, numbers, text};
+use crate::command::{ahv, fail, json, number, numbers, stderr, text};
 
 /// The trim of Table 2 as a state that is given.
 const TABLE_2: [&str; 4] = [
@@ -126,4 +126,40 @@ fn the_comparison_has_its_numbers() {
             .count(),
         141
     );
+}
+
+/// Where a trim starts or a flight goes on without a flow, the surface is named.
+#[test]
+fn a_trim_and_a_flight_without_flow_name_the_surface() {
+    let slow = ["trim", "--model", "fpm", "--velocity", "3000"];
+    let trim = ahv(&slow);
+    assert_eq!(trim.status.code(), Some(3));
+    let why = stderr(&trim);
+    assert!(why.contains("combustor: thermal choking"), "{why}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("flight.csv");
+    let out = out.to_str().expect("UTF-8");
+    let words = [
+        "simulate", "--model", "fpm", "--t-end", "1", "--dt", "0.01", "--input", "phi=30", "--out",
+        out,
+    ];
+    fail(
+        &words,
+        3,
+        &[
+            "became not a number: combustor: thermal choking",
+            "the last good state",
+        ],
+    );
+}
+
+/// What the page says of the deviations is what the command prints.
+#[test]
+fn the_page_has_the_variations() {
+    let page = include_str!("../../../../docs/first-principles.md");
+    let told = text(&["compare", "--variations"]);
+    assert!(told.lines().count() == 10, "{told}");
+    for line in told.lines().skip(1) {
+        assert!(page.contains(line.trim_end()), "{line}");
+    }
 }

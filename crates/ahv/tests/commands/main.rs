@@ -9,6 +9,7 @@ mod campaign;
 mod closed_loop;
 mod command;
 mod files;
+mod fit;
 mod forces;
 mod linearize;
 mod monte_carlo;
