@@ -25,6 +25,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod edit;
 mod entries;
 mod fault;
 mod header;
@@ -38,6 +39,7 @@ mod unit;
 
 use ahv_core::{Bounds, ChoiceOption, GeneratedModel, Table, Vector};
 
+pub use edit::Edit;
 pub use fault::{Fault, visible};
 pub use monomial::{Powers, powers};
 pub use text::{Part, Text, Unreadable};

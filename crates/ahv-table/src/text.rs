@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::{self, Display};
 use std::ops::Range;
 
-use toml_edit::{Document, InlineTable, Item, Key, TableLike, Value};
+use toml_edit::{Document, DocumentMut, InlineTable, Item, Key, TableLike, Value};
 
 use crate::Fault;
 
@@ -56,6 +56,10 @@ impl Text {
     #[must_use]
     pub fn raw(&self) -> &str {
         self.document.raw()
+    }
+
+    pub(crate) fn mutable(&self) -> DocumentMut {
+        self.document.clone().into_mut()
     }
 
     /// The whole table.
