@@ -33,7 +33,7 @@ def identify_lines() -> Iterator[str]:
     """Yield the lines of the file."""
     yield f"# ahv reference output error, scipy.optimize.least_squares, omega {OMEGA}, zeta {ZETA}, seed {SEED}"
     generator = numpy.random.default_rng(SEED)
-    times = numpy.arange(SAMPLES) * STEP
+    times = numpy.arange(SAMPLES, dtype=numpy.float64) * STEP
     measured = _decay(numpy.array([OMEGA, ZETA, 1.0, 0.0]), times) + NOISE * generator.normal(size=SAMPLES)
     for time, eta in zip(times, measured, strict=True):
         yield f"{float(time)!r},{float(eta)!r}"

@@ -63,7 +63,7 @@ def _system(generator: numpy.random.Generator, shape: tuple[int, int, int], unst
         blocks.append([[-generator.uniform(0.1, 1.0)]])
     mixing = generator.normal(size=(states, states)) @ numpy.diag(10.0 ** numpy.linspace(0.0, UNITS, states))
     a = numpy.linalg.solve(mixing, scipy.linalg.block_diag(*blocks) @ mixing)
-    b = numpy.linalg.solve(mixing, generator.normal(size=(states, inputs)))
+    b = numpy.asarray(numpy.linalg.solve(mixing, generator.normal(size=(states, inputs))), dtype=numpy.float64)
     return a, b, generator.normal(size=(outputs, states)) @ mixing
 
 

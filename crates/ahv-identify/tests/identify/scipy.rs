@@ -1,10 +1,7 @@
 //! Output error against SciPy, and what cannot be estimated.
-#![forbid(unsafe_code)]
 
-mod common;
-
+use crate::common::Case;
 use ahv_identify::{IdentifyError, Problem, Record, filter, output_error};
-use common::Case;
 
 /// The record, and omega, zeta, their standard errors and the noise.
 fn scipy() -> (Record, Vec<f64>) {

@@ -1,16 +1,13 @@
 //! Records that models make with known coefficients: how often the estimates lie within three of their own standard errors.
-#![forbid(unsafe_code)]
 
-mod common;
-
+use crate::common::{Case, estimates};
 use ahv_identify::{filter, output_error};
-use common::{Case, estimates};
 
 const REPETITIONS: u64 = 200;
 /// Of so many estimates three standard errors must hold the truth.
 const SHARE: f64 = 0.95;
 
-fn covered(case: &Case, method: common::Method) -> Vec<f64> {
+fn covered(case: &Case, method: crate::common::Method) -> Vec<f64> {
     let all = estimates(case, method, REPETITIONS);
     assert_eq!(all.len() as u64, REPETITIONS);
     let truth = case.truth();
