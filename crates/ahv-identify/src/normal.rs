@@ -14,7 +14,9 @@ const SHARE: f64 = 0.3;
 /// The indices of the unknowns that cannot be told apart, or that have no effect.
 pub(crate) fn inverse(matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, Vec<usize>> {
     let n = matrix.nrows();
-    let idle: Vec<usize> = (0..n).filter(|&it| !(matrix[(it, it)] > 0.0)).collect();
+    let idle: Vec<usize> = (0..n)
+        .filter(|&it| matrix[(it, it)] <= 0.0 || matrix[(it, it)].is_nan())
+        .collect();
     if !idle.is_empty() {
         return Err(idle);
     }
