@@ -150,7 +150,7 @@ fn trimmed<M: GeneratedModel>() -> Trimmed {
         parameters: values(&parameters),
         start: values(&trim.state),
         input: values(&trim.input),
-        inputs: &M::Input::NAMES,
+        inputs: M::Input::NAMES,
     }
 }
 
