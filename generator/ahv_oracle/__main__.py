@@ -6,6 +6,8 @@ solutions of Riccati equations, ``python -m ahv_oracle roots --tables D --out F`
 logarithm, powers and inverses, ``python -m ahv_oracle normals --out F`` keyed normal numbers,
 ``python -m ahv_oracle zeros --tables D --out F`` SLICOT's invariant zeros (see there),
 ``python -m ahv_oracle answers --tables ../examples --out F`` what the programs of the examples must answer.
+``python -m ahv_oracle identify --out F`` SciPy's estimates from a record,
+``reduction`` SLICOT's reductions (see there),
 ``gas_dynamics`` and ``fpm`` those of the first-principles model, ``least_squares`` and
 ``fit_samples`` those of fits.
 ``--functions NAME,NAME`` restricts the outputs, so that a model with many can be written with few points.
@@ -22,9 +24,11 @@ from .first_principles import first_principles_lines
 from .fit_samples import fit_sample_lines
 from .flights import flight_lines
 from .gas_dynamics import gas_dynamics_lines
+from .identify import identify_lines
 from .least_squares import least_squares_lines
 from .model import MODELS
 from .normals import normal_lines
+from .reduction import reduction_lines
 from .riccati import riccati_lines
 from .roots import root_lines
 from .table import TableError
@@ -33,6 +37,8 @@ from .vectors import write_lines, write_vectors
 from .zeros import zero_lines
 
 ALONE = {
+    "identify": (identify_lines, "estimates of output error"),
+    "reduction": (reduction_lines, "reductions of linear systems (SLICOT's: see there)"),
     "riccati": (riccati_lines, "solutions of Riccati equations"),
     "elementary": (elementary_lines, "values of sine, cosine and exponential"),
     "transcendental": (transcendental_lines, "values of tangent, logarithm, powers and inverses"),

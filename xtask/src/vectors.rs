@@ -29,8 +29,9 @@ fn models() -> Result<Vec<(String, String)>, String> {
 }
 
 /// Writes the oracle's points and values and CasADi's values at the same points, then SciPy's flights, Riccati
-/// solutions, poles and zeros, the answers of the examples' programs, and mpmath's elementary functions and normal numbers. SLICOT's zeros, `zeros.txt`, are made by
-/// hand, since `slycot` is no requirement: `generator/ahv_oracle/zeros.py` says how.
+/// solutions, poles and zeros, the answers of the examples' programs, and mpmath's elementary functions and normal numbers. SLICOT's zeros and
+/// reductions, `zeros.txt` and `reduction.txt`, are made by hand, since `slycot` is no requirement: `zeros.py` and `reduction.py` of
+/// `generator/ahv_oracle` say how.
 pub(crate) fn run() -> Result<(), String> {
     let python = python::development()?;
     for (model, table) in models()? {
@@ -61,6 +62,7 @@ pub(crate) fn run() -> Result<(), String> {
     shell::run(scipy.current_dir(shell::root().join("generator")))?;
     println!("tests/vectors/dcom.flights.txt");
     for name in [
+        "identify",
         "riccati",
         "elementary",
         "transcendental",

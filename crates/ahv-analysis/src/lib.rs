@@ -7,6 +7,7 @@
 //! * [`erased`]: all of it for any model, behind one interface.
 //! * [`dual`]: exact derivatives of a model's outputs.
 //! * [`lqr`]: the linear-quadratic regulator of a linear system; [`actuator`]: lags and limits of what moves the inputs.
+//! * [`reduction`]: a smaller linear system in the place of a large one, with its errors.
 //! * [`monte_carlo`]: many flights with noise and dispersions, as fast as the machine goes; [`ordered`]: such work in parts.
 //! * [`statistics`]: estimates with their confidence.
 //!
@@ -38,6 +39,7 @@ pub mod lqr;
 pub mod monte_carlo;
 pub mod ordered;
 pub mod poles;
+pub mod reduction;
 pub mod sensitivity;
 pub mod statistics;
 pub mod trim;

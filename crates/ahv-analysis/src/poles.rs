@@ -11,7 +11,7 @@ use ahv_core::ModeOfMotion;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::linearize::LinearSystem;
-use balance::{balance, similar};
+pub(crate) use balance::{balance, similar};
 use blocks::blocks;
 use eigen::Eigen;
 pub use zeros::{Decoupling, Zero, Zeros, zeros};

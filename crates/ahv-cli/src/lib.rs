@@ -40,6 +40,7 @@ mod forces;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
+mod identify;
 pub mod labels;
 mod linearize;
 mod lqr;
@@ -53,6 +54,7 @@ pub mod output;
 mod poles;
 pub mod progress;
 mod rare;
+pub mod reduce;
 mod registry;
 mod show;
 pub mod signals;
@@ -104,6 +106,7 @@ enum ModelCommand {
     Covariance(covariance::Arguments),
     Disperse(disperse::Arguments),
     Forces(forces::Arguments),
+    Identify(identify::Arguments),
     Linearize(linearize::Arguments),
     Lqr(lqr::Arguments),
     #[command(name = "montecarlo")]
@@ -119,7 +122,9 @@ type Run = Box<dyn Fn(&ArgMatches) -> Result<(), Failure>>;
 
 /// A command of another crate.
 pub struct ExtraCommand {
-    command: clap::Command,
+    name: &'static str,
+    /// Adds its arguments, some of which are made of the models that are known by then.
+    augment: fn(clap::Command) -> clap::Command,
     run: Run,
 }
 
@@ -127,7 +132,8 @@ impl ExtraCommand {
     /// The command `name` with the arguments `A`, whose description is the command's.
     pub fn new<A: Args + 'static>(name: &'static str, run: fn(&A) -> Result<(), Failure>) -> Self {
         Self {
-            command: A::augment_args(clap::Command::new(name)),
+            name,
+            augment: A::augment_args,
             run: Box::new(move |matches| {
                 run(&A::from_arg_matches(matches).unwrap_or_else(|error| error.exit()))
             }),
@@ -182,7 +188,7 @@ fn asked(
 ) -> Result<Asked<'_>, clap::Error> {
     let mut matches = command(extra).try_get_matches_from(line)?;
     if let Some((name, matches)) = matches.subcommand()
-        && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
+        && let Some(extra) = extra.iter().find(|it| it.name == name)
     {
         return Ok(Asked::Extra(extra, matches.clone()));
     }
@@ -202,7 +208,10 @@ fn answer(asked: &clap::Error) -> u8 {
 
 /// The whole command line. What is done with models stands in the order of the names.
 fn command(extra: &[ExtraCommand]) -> clap::Command {
-    let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
+    let added = extra
+        .iter()
+        .map(|it| (it.augment)(clap::Command::new(it.name)));
+    let command = Cli::command().subcommands(added);
     command.mut_subcommands(|command| match command.get_name() {
         "diff" | "generate" | "new" | "table" => command,
         _ => command.display_order(1),
@@ -227,6 +236,7 @@ impl ModelCommand {
             Self::Covariance(arguments) => covariance::run(arguments),
             Self::Disperse(arguments) => disperse::run(arguments),
             Self::Forces(arguments) => forces::run(arguments),
+            Self::Identify(arguments) => identify::run(arguments),
             Self::Linearize(arguments) => linearize::run(arguments),
             Self::Lqr(arguments) => lqr::run(arguments),
             Self::MonteCarlo(arguments) => monte_carlo::run(arguments),

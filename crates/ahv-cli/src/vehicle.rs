@@ -189,6 +189,16 @@ impl VehicleArgs {
         }
     }
 
+    /// The table that is given.
+    pub(crate) fn table(&self) -> Option<&Path> {
+        self.table.as_deref()
+    }
+
+    /// Whether a model is asked for; only a command that needs none has it otherwise.
+    pub(crate) fn is_given(&self) -> bool {
+        !self.model.is_empty()
+    }
+
     /// The model that is asked for.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ const GAIN: f64 = 0.95;
 const MAX_ROUNDS: usize = 100;
 
 /// The diagonal of D in D⁻¹ `matrix` D whose rows and columns are about equally long.
-pub(super) fn balance(matrix: &DMatrix<f64>) -> DVector<f64> {
+pub(crate) fn balance(matrix: &DMatrix<f64>) -> DVector<f64> {
     let n = matrix.nrows();
     let mut scale = DVector::from_element(n, 1.0);
     let mut balanced = matrix.clone();
@@ -41,7 +41,7 @@ pub(super) fn balance(matrix: &DMatrix<f64>) -> DVector<f64> {
 }
 
 /// D⁻¹ `matrix` D.
-pub(super) fn similar(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
+pub(crate) fn similar(matrix: &DMatrix<f64>, scale: &DVector<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
         matrix[(row, column)] * scale[column] / scale[row]
     })

@@ -5,6 +5,7 @@ mod figure;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use ahv_analysis::reduction::ReductionMethod;
 use ahv_analysis::statistics::Estimate;
 use ahv_cli::csv_file::CsvFile;
 use ahv_cli::failure::{Failure, print};
@@ -26,7 +27,7 @@ const FEWEST_RUNS: u64 = 30;
 /// Most runs and most steps.
 const MOST: u64 = 1_000_000;
 
-/// Reduces flexible modes to coloured noise and compares the two.
+/// Reduces flexible modes to coloured noise and compares the two, or the linear system of a model to fewer states.
 ///
 /// A mode eta'' + 2 zeta omega eta' + omega^2 eta = sigma xi (17) becomes the Ornstein-Uhlenbeck process
 /// dchi = -a chi dt + b dw (24). Moments, autocorrelations and spectra are in closed form, from rest; beside them stand
@@ -61,7 +62,8 @@ pub(crate) struct Arguments {
     sigma: Option<Vec<f64>>,
 
     /// Choice of a and b: printed (23) is zeta omega, zeta sigma/omega; variance is zeta omega, sigma/(sqrt(2) omega); moment
-    /// is omega/(2 zeta), sigma/(2 zeta omega). The outcome states what each keeps of the mode
+    /// is omega/(2 zeta), sigma/(2 zeta omega). The outcome states what each keeps of the mode. balanced (truncation) and krylov (moments at zero frequency) reduce the
+    /// linear system of --model about its trim to --order states
     #[arg(long, default_value = Reduction::Printed.name(), value_parser = methods())]
     method: String,
 
@@ -88,10 +90,15 @@ pub(crate) struct Arguments {
     /// Print the outcome as JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    linear: ahv_cli::reduce::Arguments,
 }
 
 fn methods() -> PossibleValuesParser {
-    Reduction::ALL.map(Reduction::name).into()
+    let of_modes = Reduction::ALL.map(Reduction::name);
+    let of_systems = ReductionMethod::ALL.map(ReductionMethod::name);
+    PossibleValuesParser::new(of_modes.into_iter().chain(of_systems))
 }
 
 /// A mode, its reduction and an ensemble of both.
@@ -109,6 +116,12 @@ struct Subject {
 ///
 /// [`Failure::Request`] for modes or times without sense and files that cannot be written.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut systems = ReductionMethod::ALL.into_iter();
+    if let Some(method) = systems.find(|it| it.name() == arguments.method) {
+        arguments.refuse_those_of_modes(method)?;
+        return arguments.linear.run(method, arguments.json);
+    }
+    arguments.linear.refuse(&arguments.method)?;
     let method = Reduction::from_name(&arguments.method).unwrap_or(Reduction::Printed);
     let experiment = arguments.experiment()?;
     let modes = arguments.modes()?;
@@ -151,6 +164,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Arguments {
+    /// A system has no list of modes, and leaves no file.
+    fn refuse_those_of_modes(&self, method: ReductionMethod) -> Result<(), Failure> {
+        let given = [
+            ("--omega", self.omega.is_some()),
+            ("--zeta", self.zeta.is_some()),
+            ("--sigma", self.sigma.is_some()),
+            ("--out", self.out.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((flag, _)) => Err(Failure::Request(format!(
+                "{flag}: it is for modes; --method {} reduces the linear system of --model",
+                method.name()
+            ))),
+            None => Ok(()),
+        }
+    }
+
     fn experiment(&self) -> Result<Experiment, Failure> {
         let steps = (self.t_end / self.dt).round();
         let steps = allowed(self.t_end, self.dt, steps, MOST as f64)?;

@@ -1,0 +1,6 @@
+//! Parameters from records: against known coefficients, and against SciPy.
+#![forbid(unsafe_code)]
+
+mod common;
+mod coverage;
+mod scipy;
