@@ -6,7 +6,7 @@
 //! * [`disperse`]: trims and roots of vehicles whose parameters are drawn.
 //! * [`erased`]: all of it for any model, behind one interface.
 //! * [`dual`]: exact derivatives of a model's outputs.
-//! * [`lqr`]: the linear-quadratic regulator of a linear system; [`actuator`]: lags and limits of what moves the inputs.
+//! * [`lqr`]: the linear-quadratic regulator of a linear system; [`margins`]: gain and phase margins of a feedback; [`actuator`]: lags and limits of what moves the inputs.
 //! * [`monte_carlo`]: many flights with noise and dispersions, as fast as the machine goes; [`ordered`]: such work in parts.
 //! * [`statistics`]: estimates with their confidence.
 //!
@@ -35,6 +35,7 @@ pub mod dual;
 pub mod erased;
 pub mod linearize;
 pub mod lqr;
+pub mod margins;
 pub mod monte_carlo;
 pub mod ordered;
 pub mod poles;
