@@ -195,7 +195,13 @@ fn the_effects_of_a_change_are_compared() {
     );
     let pictures = root.path().join("pictures");
     let flags = ["--flights", "16", "--pictures", text(&pictures)];
-    let found = json(&[["diff", "--json", text(&old), text(&new)].as_slice(), &flags].concat());
+    let found = json(
+        &[
+            ["diff", "--json", text(&old), text(&new)].as_slice(),
+            &flags,
+        ]
+        .concat(),
+    );
     let models = found["tables"][0]["models"].as_array().expect("models");
     for effect in models {
         let model = effect["model"].as_str().expect("a name");
@@ -211,12 +217,23 @@ fn the_effects_of_a_change_are_compared() {
         let count = |name: &str| trims[name].as_u64().expect("a number");
         assert_eq!(count("new"), count("old") + count("gained") - count("lost"));
         let outputs = effect["outputs"].as_array().expect("outputs");
-        let lift = outputs.iter().find(|it| it["name"] == "lift").expect("lift");
+        let lift = outputs
+            .iter()
+            .find(|it| it["name"] == "lift")
+            .expect("lift");
         // Lift is linear in the slope: at its largest angle a tenth more of this part.
-        assert!(lift["share"].as_f64().is_some_and(|it| it > 0.01 && it < 0.1), "{lift}");
+        assert!(
+            lift["share"]
+                .as_f64()
+                .is_some_and(|it| it > 0.01 && it < 0.1),
+            "{lift}"
+        );
         let slopes = effect["slopes"].as_array().expect("slopes");
         let is_stiffness = |it: &&Value| it["output"] == "lift" && it["state"] == "alpha";
-        assert!(slopes.iter().any(|it| is_stiffness(&it)), "{model}: {slopes:?}");
+        assert!(
+            slopes.iter().any(|it| is_stiffness(&it)),
+            "{model}: {slopes:?}"
+        );
         for side in ["old", "new"] {
             let left = &effect["flights"][side];
             let [low, value, high] = ["low", "value", "high"].map(|it| left[it].as_f64());
@@ -228,5 +245,8 @@ fn the_effects_of_a_change_are_compared() {
     let line = ["diff", "--format", "markdown", text(&old), text(&new)];
     let output = ahv(&[line.as_slice(), &flags[2..]].concat());
     let said = String::from_utf8(output.stdout).expect("text");
-    assert!(said.contains("![Poles and trims of dcom](<") && !said.contains("NaN"), "{said}");
+    assert!(
+        said.contains("![Poles and trims of dcom](<") && !said.contains("NaN"),
+        "{said}"
+    );
 }

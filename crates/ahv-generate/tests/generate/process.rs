@@ -100,8 +100,13 @@ fn a_killed_generation_leaves_each_file_old_or_new() {
     let whole = start.elapsed();
     assert!(done.expect("it runs").success());
     let after = scratch.snapshot("generated");
-    let changed: Vec<usize> = (0..before.len()).filter(|&it| before[it] != after[it]).collect();
-    assert!(before.len() == after.len() && changed.len() > 2, "{changed:?}");
+    let changed: Vec<usize> = (0..before.len())
+        .filter(|&it| before[it] != after[it])
+        .collect();
+    assert!(
+        before.len() == after.len() && changed.len() > 2,
+        "{changed:?}"
+    );
     let (mut olds, mut news, mut random) = (0, 0, 19_u64);
     for _ in 0..50 {
         for &index in &changed {
@@ -109,7 +114,9 @@ fn a_killed_generation_leaves_each_file_old_or_new() {
         }
         let mut child = scratch.process(&[]);
         let mut child = child.stdout(Stdio::null()).spawn().expect("it runs");
-        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         // Now and then after the end, however fast a run is.
         let share = (random >> 33) as f64 / f64::from(1_u32 << 31);
         thread::sleep(whole.mul_f64(1.2 * share));
@@ -123,7 +130,9 @@ fn a_killed_generation_leaves_each_file_old_or_new() {
         };
         let (temporary, left): (Vec<_>, Vec<_>) =
             left.into_iter().partition(|it| is_temporary(&it.0));
-        temporary.iter().for_each(|it| fs::remove_file(&it.0).expect("removed"));
+        temporary
+            .iter()
+            .for_each(|it| fs::remove_file(&it.0).expect("removed"));
         assert_eq!(left.len(), before.len());
         for (index, file) in left.iter().enumerate() {
             let is_whole = *file == before[index] || *file == after[index];
@@ -135,7 +144,10 @@ fn a_killed_generation_leaves_each_file_old_or_new() {
         assert!(scratch.snapshot("generated") == after, "it does not mend");
     }
     // A kill between two of the renames leaves both kinds: they take a thousandth of a run.
-    assert!(olds > 5 && news > 0 && olds + news >= 48, "{olds} old, {news} new");
+    assert!(
+        olds > 5 && news > 0 && olds + news >= 48,
+        "{olds} old, {news} new"
+    );
 }
 
 /// A crash of the interpreter in a family is a fault at its line.

@@ -1,7 +1,7 @@
 //! Changes of tables: of letters, and of numbers.
 
 use ahv_review::{Difference, faults};
-use ahv_table::{Text};
+use ahv_table::Text;
 
 use crate::common::{Random, TABLES, subject, text};
 

@@ -1,7 +1,7 @@
 //! How tables are laid out and shown.
 
 use ahv_review::{Overview, laid_out};
-use ahv_table::{Text};
+use ahv_table::Text;
 
 use crate::common::{Random, TABLES, subject, text};
 
