@@ -8,6 +8,7 @@
 //! * [`dual`]: exact derivatives of a model's outputs.
 //! * [`lqr`]: the linear-quadratic regulator of a linear system; [`actuator`]: lags and limits of what moves the inputs.
 //! * [`reduction`]: a smaller linear system in the place of a large one, with its errors.
+//! * [`lqr`]: the linear-quadratic regulator of a linear system; [`margins`]: gain and phase margins of a feedback; [`actuator`]: lags and limits of what moves the inputs.
 //! * [`monte_carlo`]: many flights with noise and dispersions, as fast as the machine goes; [`ordered`]: such work in parts.
 //! * [`statistics`]: estimates with their confidence.
 //!
@@ -36,6 +37,7 @@ pub mod dual;
 pub mod erased;
 pub mod linearize;
 pub mod lqr;
+pub mod margins;
 pub mod monte_carlo;
 pub mod ordered;
 pub mod poles;

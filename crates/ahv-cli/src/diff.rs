@@ -1,13 +1,18 @@
 //! `ahv diff`: what changed between tables, and what that does to the models.
 
 mod effect;
+mod flown;
+mod picture;
+mod regulated;
 mod report;
+mod whole_box;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{fs, io};
 
 use ahv_analysis::erased::AnyModel;
+use ahv_generate::{ChangedFile, Surroundings};
 use ahv_review::Difference;
 use ahv_table::Text;
 use clap::ValueEnum;
@@ -16,12 +21,13 @@ use tempfile::TempDir;
 use crate::failure::{Failure, print};
 use crate::registry::models;
 use crate::{names, output, tables};
-use effect::Effect;
+use effect::{Asked, Effect};
 
-/// Compares tables: which numbers changed, by how much, and what that does to trim and poles.
+/// Compares tables: which numbers changed, by how much, and what that does to the models.
 ///
-/// Trim and poles are those of the default flight condition, of the models that this program has. Tables of other families are
-/// compared without them.
+/// For the models that this program has: trim, poles, zeros, slopes of forces and moments and the margins of the old gains at the default
+/// flight condition; trims and the largest change of each force and moment over the validity box. Tables of other families are compared
+/// without them.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Table or folder of tables before the change, or a git revision, in which NEW is looked up
@@ -34,6 +40,15 @@ pub(crate) struct Arguments {
     /// As --format json
     #[arg(long, conflicts_with = "format")]
     json: bool,
+    /// Fly each model N times for 3 s with each table, with noise and dispersed parameters, for the probability to leave the validity box
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000))]
+    flights: Option<u64>,
+    /// Count the lines of generated code that change: derives and emits both tables, which needs Python
+    #[arg(long)]
+    code: bool,
+    /// Folder for a picture of each model that changes, to which --format markdown links
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -62,16 +77,24 @@ enum Kind {
 struct Changed {
     difference: Difference,
     effects: Vec<Effect>,
+    /// One an effect, if they are asked for: the path of its picture.
+    pictures: Vec<PathBuf>,
+    /// Files of generated code that change, if they are asked for.
+    code: Option<Vec<ChangedFile>>,
 }
 
 /// Runs the command.
 ///
 /// # Errors
 ///
-/// [`Failure::Request`] for a file that cannot be read, is no table, or a revision that does not have it.
+/// [`Failure::Request`] for a file that cannot be read or written, is no table, or a revision that does not have it;
+/// [`Failure::Interrupted`]
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pairs = Pairs::find(&arguments.old, &arguments.new)?;
-    let compared = pairs.files.iter().map(Pair::compare);
+    if let Some(folder) = &arguments.pictures {
+        output::folder(folder)?;
+    }
+    let compared = pairs.files.iter().map(|it| it.compare(arguments));
     let compared = compared.collect::<Result<Vec<_>, _>>()?;
     match arguments.format {
         Format::Text if !arguments.json => print(report::text(&compared).trim_end()),
@@ -206,9 +229,9 @@ fn at_revision(revision: &str, new: &Path) -> Result<TempDir, Failure> {
 }
 
 impl Pair {
-    fn compare(&self) -> Result<Compared, Failure> {
+    fn compare(&self, arguments: &Arguments) -> Result<Compared, Failure> {
         let change = match (&self.old, &self.new) {
-            (Some(old), Some(new)) => Kind::Changed(Box::new(changed(old, new)?)),
+            (Some(old), Some(new)) => Kind::Changed(Box::new(self.changed([old, new], arguments)?)),
             (Some(_), None) => Kind::Whole("removed"),
             _ => Kind::Whole("new"),
         };
@@ -217,18 +240,42 @@ impl Pair {
             change,
         })
     }
-}
 
-fn changed(old: &Path, new: &Path) -> Result<Changed, Failure> {
-    let [before, after] = [tables::parsed(old)?, tables::parsed(new)?];
-    let subject = tables::known(&after, new)?.subject;
-    let difference = Difference::new(&before, &after, &subject);
-    let is_same = difference.is_empty();
-    let listed =
-        |text: &Text, model: &dyn AnyModel| ahv_review::models(text).contains(&model.name());
-    let both = models().filter(|it| !is_same && listed(&before, *it) && listed(&after, *it));
-    Ok(Changed {
-        effects: both.map(|model| Effect::new(model, old, new)).collect(),
-        difference,
-    })
+    fn changed(&self, [old, new]: [&Path; 2], arguments: &Arguments) -> Result<Changed, Failure> {
+        let [before, after] = [tables::parsed(old)?, tables::parsed(new)?];
+        let subject = tables::known(&after, new)?.subject;
+        let difference = Difference::new(&before, &after, &subject);
+        let mut changed = Changed {
+            difference,
+            effects: Vec::new(),
+            pictures: Vec::new(),
+            code: None,
+        };
+        if changed.difference.is_empty() {
+            return Ok(changed);
+        }
+        let listed =
+            |text: &Text, model: &dyn AnyModel| ahv_review::models(text).contains(&model.name());
+        let asked = Asked {
+            flights: arguments.flights,
+        };
+        for model in models().filter(|it| listed(&before, *it) && listed(&after, *it)) {
+            let effect = Effect::new(model, [old, new], &asked)?;
+            if let Some(folder) = &arguments.pictures {
+                let path = folder.join(picture::file_name(&self.name, effect.model));
+                output::picture(&path, picture::figure(&effect).svg())?;
+                changed.pictures.push(path);
+            }
+            changed.effects.push(effect);
+        }
+        if arguments.code {
+            let code =
+                Surroundings::of_process().and_then(|it| ahv_generate::changed_code(old, new, &it));
+            changed.code = Some(code.map_err(|failure| {
+                let said = failure.to_string();
+                Failure::Request(format!("--code: {}", said.trim_start_matches("error: ")))
+            })?);
+        }
+        Ok(changed)
+    }
 }

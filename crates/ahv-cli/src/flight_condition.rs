@@ -176,8 +176,7 @@ impl FlightCondition {
                 names::list(&sought)
             )));
         }
-        let bounds = vehicle.inputs.names.iter().copied();
-        Ok(flight.within_named(bounds.zip(vehicle.input_bounds.iter().copied())))
+        Ok(vehicle.within(flight))
     }
 
     /// The same without bounds, and all inputs that are given: those that are sought replace what the trim finds.
@@ -342,6 +341,18 @@ impl Vehicle {
             self.units.factor_from(own, factor)
         };
         SteadyState::converted(&self.model.trim_problem(), factor)
+    }
+
+    /// A steady state whose sought inputs stay inside their validity box.
+    fn within(&self, flight: SteadyState) -> SteadyState {
+        let bounds = self.inputs.names.iter().copied();
+        flight.within_named(bounds.zip(self.input_bounds.iter().copied()))
+    }
+
+    /// The same of what is given where nothing is asked for.
+    #[cfg(feature = "generate")]
+    pub(crate) fn steady_within(&self) -> SteadyState {
+        self.within(self.steady())
     }
 
     /// The inputs that a trim seeks.

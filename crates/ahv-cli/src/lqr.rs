@@ -117,6 +117,22 @@ fn costs(
     }
 }
 
+/// The gains at a trim for the customary deviations.
+///
+/// # Errors
+///
+/// [`Failure::Request`] for a model that names none, [`Failure::Numeric`] without a regulator.
+#[cfg(feature = "generate")]
+pub(crate) fn customary(
+    vehicle: &Vehicle,
+    flight: &SteadyState,
+    trim: &Trim<Vec<f64>, Vec<f64>>,
+) -> Result<Gains, Failure> {
+    let states = costs("--state-deviation", &[], vehicle, vehicle.model.states())?;
+    let inputs = costs("--input-deviation", &[], vehicle, vehicle.model.inputs())?;
+    gains(vehicle, flight, trim, &states, &inputs)
+}
+
 /// The gains at a trim for deviations of states and inputs that cost 1.
 fn gains(
     vehicle: &Vehicle,

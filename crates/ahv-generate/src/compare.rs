@@ -87,6 +87,15 @@ impl Difference {
         }
     }
 
+    /// A difference of two texts that are both known.
+    pub(crate) fn of_texts(path: String, status: Status, old: String, new: String) -> Self {
+        Self {
+            old,
+            new,
+            ..Self::without_text(path, status)
+        }
+    }
+
     /// An IR that is not what the table gives. What that is, only a derivation can find out.
     fn unknown_ir(table: &str, reason: &'static str) -> Self {
         Self {

@@ -20,6 +20,7 @@
 
 mod args;
 mod audit;
+mod code;
 mod compare;
 mod derive;
 mod describe;
@@ -50,6 +51,7 @@ use ahv_codegen::{Options, Passes, Tree};
 
 pub use args::{Args, Language};
 pub use audit::{Evaluate, Values};
+pub use code::{ChangedFile, changed_code};
 pub use compare::{Difference, Kept, Status};
 pub use describe::{Described, FamilyFault, describe};
 pub use failure::{Failure, TableFault};

@@ -120,6 +120,31 @@ impl Tables {
         }
     }
 
+    /// One table by itself.
+    ///
+    /// # Errors
+    /// It cannot be read, is no table, or has no name.
+    pub(crate) fn of_file(path: &Path) -> Result<Self, Failure> {
+        let shown = path.display().to_string();
+        let bytes = files::read(path)
+            .map_err(|error| Failure::new(format!("cannot read {shown}: {error}")))?;
+        let (text, table, hash) =
+            parse(path, &shown, bytes).map_err(|fault| Failure::Tables(vec![*fault]))?;
+        let tables = Self {
+            structure: BTreeMap::from([(table.name.clone(), hash)]),
+            sources: vec![Source {
+                path: path.to_owned(),
+                shown,
+                text,
+            }],
+            parsed: vec![table],
+        };
+        match tables.name_faults() {
+            faults if faults.is_empty() => Ok(tables),
+            faults => Err(Failure::Tables(faults)),
+        }
+    }
+
     /// Files are named after tables: each needs a name of its own.
     fn name_faults(&self) -> Vec<TableFault> {
         let mut faults = Vec::new();

@@ -83,8 +83,13 @@ fn trim_and_poles_are_those_of_each_table() {
                     it[side]
                 );
             }
-            let poles = json(&[&["poles"], alone.as_slice()].concat());
-            let poles = poles["poles"].as_array().expect("poles");
+            let roots = json(&[&["poles"], alone.as_slice()].concat());
+            let poles = roots["poles"].as_array().expect("poles");
+            let zeros = roots["zeros"].as_array().expect("zeros");
+            for root in effect["zeros"][side].as_array().expect("zeros") {
+                let pair = serde_json::json!([root["re"], root["im"]]);
+                assert!(zeros.contains(&pair), "{model}: {pair} in {zeros:?}");
+            }
             for it in effect["poles"].as_array().expect("poles") {
                 let root = &it[side];
                 let pair = serde_json::json!([root["re"], root["im"]]);
@@ -176,5 +181,74 @@ fn a_table_without_a_trim_says_so() {
     assert!(
         missing.starts_with("with the new table: dcom: "),
         "{missing}"
+    );
+}
+
+/// The margins with the gains of the old table: of a regulator on its own vehicle they are at least half the gain and 60 deg.
+#[test]
+fn the_effects_of_a_change_are_compared() {
+    let root = tempfile::tempdir().expect("a folder");
+    let [old, new] = folders(
+        root.path(),
+        "\"alpha\" = { value = 4.6773",
+        "\"alpha\" = { value = 5.1450",
+    );
+    let pictures = root.path().join("pictures");
+    let flags = ["--flights", "16", "--pictures", text(&pictures)];
+    let found = json(
+        &[
+            ["diff", "--json", text(&old), text(&new)].as_slice(),
+            &flags,
+        ]
+        .concat(),
+    );
+    let models = found["tables"][0]["models"].as_array().expect("models");
+    for effect in models {
+        let model = effect["model"].as_str().expect("a name");
+        let loops = effect["regulated"]["loops"].as_array().expect("loops");
+        assert!(!loops.is_empty(), "{effect}");
+        for it in loops {
+            let most = &it["old"]["most_gain"];
+            assert!(most.is_null(), "{model}: {it}");
+            let phase = it["old"]["phase"].as_f64();
+            assert!(phase.is_none_or(|phase| phase > 59.99), "{model}: {it}");
+        }
+        let trims = &effect["trims"];
+        let count = |name: &str| trims[name].as_u64().expect("a number");
+        assert_eq!(count("new"), count("old") + count("gained") - count("lost"));
+        if model == "dcom" {
+            let outputs = effect["outputs"].as_array().expect("outputs");
+            let lift = outputs
+                .iter()
+                .find(|it| it["name"] == "lift")
+                .expect("lift");
+            // Lift is linear in the slope: at its largest angle a tenth more of this part.
+            assert!(
+                lift["share"]
+                    .as_f64()
+                    .is_some_and(|it| it > 0.01 && it < 0.1),
+                "{lift}"
+            );
+            let slopes = effect["slopes"].as_array().expect("slopes");
+            let is_stiffness = |it: &&Value| it["output"] == "lift" && it["state"] == "alpha";
+            assert!(
+                slopes.iter().any(|it| is_stiffness(&it)),
+                "{model}: {slopes:?}"
+            );
+        }
+        for side in ["old", "new"] {
+            let left = &effect["flights"][side];
+            let [low, value, high] = ["low", "value", "high"].map(|it| left[it].as_f64());
+            assert!(low <= value && value <= high && low.is_some(), "{left}");
+        }
+        let picture = fs::read_to_string(pictures.join(format!("dcom-{model}.svg")));
+        assert!(picture.expect("a picture").starts_with("<svg"));
+    }
+    let line = ["diff", "--format", "markdown", text(&old), text(&new)];
+    let output = ahv(&[line.as_slice(), &flags[2..]].concat());
+    let said = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        said.contains("![Poles and trims of dcom](<") && !said.contains("NaN"),
+        "{said}"
     );
 }

@@ -1,13 +1,19 @@
-//! What a change of a table does to a model: its trim and its poles.
+//! What a change of a table does to a model about its trim: trim, poles, zeros, slopes, margins.
 
 use std::path::Path;
 
 use ahv_analysis::erased::AnyModel;
-use ahv_analysis::poles::{Pole, damping, frequency, poles};
+use ahv_analysis::linearize::LinearSystem;
+use ahv_analysis::poles::{Pole, damping, frequency, poles, zeros};
+use ahv_analysis::trim::{SteadyState, Trim};
+use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
+use super::flown::{self, Flown};
+use super::regulated::{self, Regulated};
+use super::whole_box::{self, WholeBox};
 use crate::failure::Failure;
-use crate::vehicle::VehicleArgs;
+use crate::vehicle::{Vehicle, VehicleArgs};
 
 /// A model before and after.
 #[derive(Serialize)]
@@ -17,8 +23,40 @@ pub(super) struct Effect {
     pub(super) place: String,
     pub(super) trim: Vec<Trimmed>,
     pub(super) poles: Vec<Moved>,
-    /// Why there is no more than that.
+    /// From the default inputs to the default outputs.
+    pub(super) zeros: Roots,
+    /// Those that change of the outputs with a unit, such as forces and moments, by the states.
+    pub(super) slopes: Vec<Slope>,
+    /// With the gains of the old table.
+    pub(super) regulated: Option<Regulated>,
+    #[serde(flatten)]
+    pub(super) whole_box: WholeBox,
+    /// With --flights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) flights: Option<Flown>,
+    /// Why there is no trim, or no more than that.
     pub(super) missing: Option<String>,
+    /// Of the states.
+    #[serde(skip)]
+    pub(super) units: Vec<(&'static str, &'static str)>,
+}
+
+/// Roots before and after, of pairs the upper ones.
+#[derive(Default, Serialize)]
+pub(super) struct Roots {
+    pub(super) old: Vec<Root>,
+    pub(super) new: Vec<Root>,
+}
+
+/// The derivative of an output by a state about the trim, with all else held.
+#[derive(Serialize)]
+pub(super) struct Slope {
+    pub(super) output: &'static str,
+    pub(super) state: &'static str,
+    /// Of the output over that of the state.
+    pub(super) unit: String,
+    pub(super) old: f64,
+    pub(super) new: f64,
 }
 
 /// A state, an input or another quantity of the trim.
@@ -49,33 +87,82 @@ pub(super) struct Root {
 }
 
 /// A model with one of the tables, about its trim.
-struct Steady {
-    place: String,
+pub(super) struct Steady {
+    pub(super) flight: SteadyState,
+    pub(super) trim: Trim<Vec<f64>, Vec<f64>>,
+    /// Of all outputs with a unit.
+    system: LinearSystem,
     values: Vec<(&'static str, &'static str, f64)>,
     poles: Vec<Pole>,
+    zeros: Vec<Complex<f64>>,
+}
+
+/// What is asked for beside what is always compared.
+pub(super) struct Asked {
+    /// Flights of each table.
+    pub(super) flights: Option<u64>,
 }
 
 impl Effect {
     /// Of the tables at two paths on a model.
-    pub(super) fn new(model: &'static dyn AnyModel, old: &Path, new: &Path) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// [`Failure::Interrupted`]
+    pub(super) fn new(
+        model: &'static dyn AnyModel,
+        [old, new]: [&Path; 2],
+        asked: &Asked,
+    ) -> Result<Self, Failure> {
         let mut effect = Self {
             model: model.name(),
             place: String::new(),
             trim: Vec::new(),
             poles: Vec::new(),
+            zeros: Roots::default(),
+            slopes: Vec::new(),
+            regulated: None,
+            whole_box: WholeBox::default(),
+            flights: None,
             missing: None,
+            units: Vec::new(),
         };
-        let steady = [("old", old), ("new", new)].map(|(which, path)| {
-            steady(model, path).map_err(|failure| format!("with the {which} table: {failure}"))
-        });
+        let vehicle = |path| VehicleArgs::of(model, path).vehicle().map_err(said);
+        let with = |which: &str, why: String| format!("with the {which} table: {why}");
+        let vehicles = match [("old", old), ("new", new)]
+            .map(|(which, path)| vehicle(path).map_err(|why| with(which, why)))
+        {
+            [Ok(old), Ok(new)] => [old, new],
+            [Err(missing), _] | [_, Err(missing)] => {
+                effect.missing = Some(missing);
+                return Ok(effect);
+            }
+        };
+        effect.whole_box = whole_box::compare(&vehicles);
+        let [old, new] = &vehicles;
+        effect.units = new.states.iter().collect();
+        let steady = [("old", old), ("new", new)]
+            .map(|(which, vehicle)| steady(vehicle).map_err(|why| with(which, why)));
         match steady {
-            [Ok(old), Ok(new)] => {
-                effect.compare(&old, &new);
-                effect.place = new.place;
+            [Ok(before), Ok(after)] => {
+                let steady = [before, after];
+                effect.compare(&steady[0], &steady[1]);
+                effect.place = new.at(&steady[1].flight);
+                effect.slopes = slopes(new, &steady);
+                let gains = regulated::gains(old, &steady[0]);
+                effect.regulated = Some(match &gains {
+                    Ok(gains) => regulated::compare(&vehicles, &steady, gains),
+                    Err(why) => Regulated::without(why.clone()),
+                });
+                if let Some(members) = asked.flights {
+                    let gains = gains.ok();
+                    effect.flights =
+                        Some(flown::compare(&vehicles, &steady, gains.as_ref(), members)?);
+                }
             }
             [Err(missing), _] | [_, Err(missing)] => effect.missing = Some(missing),
         }
-        effect
+        Ok(effect)
     }
 
     fn compare(&mut self, old: &Steady, new: &Steady) {
@@ -88,6 +175,10 @@ impl Effect {
                 new,
             })
             .collect();
+        self.zeros = Roots {
+            old: upper_roots(&old.zeros),
+            new: upper_roots(&new.zeros),
+        };
         let [before, after] = [old, new].map(|it| upper(&it.poles));
         if before.len() != after.len() {
             let message = format!("{} poles and pairs became {}", before.len(), after.len());
@@ -97,8 +188,8 @@ impl Effect {
         let moved = before.iter().zip(&after);
         let moved = moved.map(|(old, new)| Moved {
             mode: new.mode,
-            old: root(old),
-            new: root(new),
+            old: root(old.value),
+            new: root(new.value),
         });
         self.poles = moved.collect();
     }
@@ -115,33 +206,86 @@ fn upper(poles: &[Pole]) -> Vec<Pole> {
     poles
 }
 
-fn root(pole: &Pole) -> Root {
+fn root(value: Complex<f64>) -> Root {
     Root {
-        re: pole.value.re,
-        im: pole.value.im,
-        frequency: frequency(pole.value),
-        damping: damping(pole.value),
+        re: value.re,
+        im: value.im,
+        frequency: frequency(value),
+        damping: damping(value),
     }
 }
 
-/// The model about its trim; in words why not.
-fn steady(model: &'static dyn AnyModel, path: &Path) -> Result<Steady, String> {
-    let said = |failure: Failure| match failure {
+/// Real roots and the upper ones of pairs.
+fn upper_roots(roots: &[Complex<f64>]) -> Vec<Root> {
+    let upper = roots.iter().filter(|it| it.im >= 0.0);
+    upper.map(|&it| root(it)).collect()
+}
+
+/// A failure in words.
+pub(super) fn said(failure: Failure) -> String {
+    match failure {
         Failure::Request(why) | Failure::Numeric(why) | Failure::Interrupted(why) => why,
-    };
-    let vehicle = VehicleArgs::of(model, path).vehicle().map_err(said)?;
-    let flight = vehicle.steady();
+    }
+}
+
+/// The vehicle about its trim; in words why not.
+fn steady(vehicle: &Vehicle) -> Result<Steady, String> {
+    let model = vehicle.model;
+    let flight = vehicle.steady_within();
     let trim = vehicle.trim(&flight).map_err(said)?;
     let point = (trim.state.as_slice(), trim.input.as_slice());
     let system = vehicle.linear(point, &[], &[]).map_err(said)?;
+    let unreached = |error: &dyn std::fmt::Display| error.to_string();
+    let found = zeros(&system).map_err(|error| unreached(&error))?;
+    let poles = poles(&system, model.modes()).map_err(|error| unreached(&error))?;
+    let outputs = vehicle.outputs.iter().filter(|(_, unit)| *unit != "1");
+    let outputs: Vec<String> = outputs.map(|(name, _)| name.to_owned()).collect();
+    let system = match outputs.is_empty() {
+        // No names ask for the default ones.
+        true => LinearSystem {
+            outputs: Vec::new(),
+            c: DMatrix::zeros(0, system.states.len()),
+            ..system
+        },
+        false => vehicle.linear(point, &[], &outputs).map_err(said)?,
+    };
     let shown = model.trim_problem().shown.iter();
     let values = shown.filter_map(|name| {
         let value = vehicle.value(name, &trim.state, &trim.input)?;
         Some((*name, vehicle.unit(name), value))
     });
     Ok(Steady {
-        place: vehicle.at(&flight),
         values: values.collect(),
-        poles: poles(&system, model.modes()).map_err(|error| error.to_string())?,
+        poles,
+        zeros: found.finite.iter().map(|it| it.value).collect(),
+        system,
+        flight,
+        trim,
     })
+}
+
+/// Relative change below which a slope is the same but for rounding.
+const SAME: f64 = 1e-9;
+
+fn slopes(vehicle: &Vehicle, [old, new]: &[Steady; 2]) -> Vec<Slope> {
+    let mut found = Vec::new();
+    for (row, &output) in new.system.outputs.iter().enumerate() {
+        for (column, &state) in new.system.states.iter().enumerate() {
+            let [before, after] = [old, new].map(|it| it.system.c[(row, column)]);
+            if (after - before).abs() <= SAME * before.abs().max(after.abs()) {
+                continue;
+            }
+            found.push(Slope {
+                output,
+                state,
+                unit: match (vehicle.unit(output), vehicle.states.unit(state)) {
+                    (unit, "1") => unit.to_owned(),
+                    (unit, by) => format!("{unit} by {by}"),
+                },
+                old: before,
+                new: after,
+            });
+        }
+    }
+    found
 }

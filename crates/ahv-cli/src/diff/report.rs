@@ -1,11 +1,16 @@
 //! Differences for people, for pull requests and for programs.
 
+mod model;
+
 use std::fmt::Write as _;
+use std::path::Path;
+
+use ahv_generate::ChangedFile;
 
 use ahv_review::{Change, Difference, Side};
 use serde::Serialize;
 
-use super::effect::{Effect, Root};
+use super::effect::Effect;
 use super::{Compared, Kind};
 use crate::show::show_beside;
 
@@ -22,6 +27,9 @@ struct Table<'a> {
     #[serde(flatten)]
     difference: Option<&'a Difference>,
     models: &'a [Effect],
+    /// With --code.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    code: Option<&'a [ChangedFile]>,
 }
 
 pub(super) fn json(compared: &[Compared]) -> Json<'_> {
@@ -36,6 +44,7 @@ pub(super) fn json(compared: &[Compared]) -> Json<'_> {
             status,
             difference: changed.map(|it| &it.difference),
             models: changed.map_or(&[], |it| &it.effects),
+            code: changed.and_then(|it| it.code.as_deref()),
         }
     });
     Json {
@@ -49,6 +58,8 @@ enum Block {
     Heading(String),
     Line(String),
     Rows(Vec<Vec<String>>),
+    /// What it shows, and its file; for pull requests alone.
+    Picture(String, String),
 }
 
 /// For people.
@@ -60,6 +71,7 @@ pub(super) fn text(compared: &[Compared]) -> String {
             Block::Title(title) => writeln!(text, "{title}"),
             Block::Heading(heading) => writeln!(text, "\n{heading}"),
             Block::Line(line) => writeln!(text, "  {line}"),
+            Block::Picture(..) => Ok(()),
             Block::Rows(rows) => {
                 text.push_str(&aligned(&rows));
                 Ok(())
@@ -101,6 +113,7 @@ pub(super) fn markdown(compared: &[Compared]) -> String {
             Block::Title(title) => writeln!(text, "### {}\n", safe(&title)),
             Block::Heading(heading) => writeln!(text, "**{}**\n", safe(&heading)),
             Block::Line(line) => writeln!(text, "{}\n", safe(&line)),
+            Block::Picture(what, file) => writeln!(text, "![{}](<{file}>)\n", safe(&what)),
             Block::Rows(rows) => {
                 for (index, row) in rows.iter().enumerate() {
                     let cells: Vec<String> = row.iter().map(|it| safe(it)).collect();
@@ -127,10 +140,14 @@ fn blocks(compared: &[Compared]) -> Vec<Block> {
             Kind::Changed(changed) => {
                 blocks.push(Block::Title(it.name.clone()));
                 of_table(&mut blocks, &changed.difference);
-                changed
-                    .effects
-                    .iter()
-                    .for_each(|it| of_model(&mut blocks, it));
+                for (index, effect) in changed.effects.iter().enumerate() {
+                    model::blocks(&mut blocks, effect);
+                    if let Some(path) = changed.pictures.get(index) {
+                        let what = format!("Poles and trims of {}", effect.model);
+                        blocks.push(Block::Picture(what, linked(path)));
+                    }
+                }
+                of_code(&mut blocks, changed.code.as_deref());
             }
         }
     }
@@ -209,38 +226,35 @@ fn percent(share: Option<f64>) -> String {
     share.map_or_else(|| "-".to_owned(), |it| format!("{:.3} %", it * 100.0))
 }
 
-fn of_model(blocks: &mut Vec<Block>, effect: &Effect) {
-    let place = match effect.place.as_str() {
-        "" => effect.model.to_owned(),
-        place => format!("{} at {place}", effect.model),
+/// A path as a link in Markdown has it, between angle brackets.
+fn linked(path: &Path) -> String {
+    let path = path.to_string_lossy().replace('\\', "/");
+    let escaped = |letter: char| match letter {
+        '<' | '>' | '\n' | '\r' | '%' => format!("%{:02X}", u32::from(letter)),
+        letter => letter.to_string(),
     };
-    blocks.push(Block::Heading(place));
-    if let Some(missing) = &effect.missing {
-        blocks.push(Block::Line(missing.clone()));
-    }
-    if !effect.trim.is_empty() {
-        let rows = effect.trim.iter().map(|it| {
-            let unit = it.unit;
-            let change = show_beside(it.new - it.old, 0.0, unit);
-            let [old, new] =
-                [(it.old, it.new), (it.new, it.old)].map(|(a, b)| show_beside(a, b, unit));
-            vec![it.name.to_owned(), old, new, change]
-        });
-        blocks.push(rows_of(&["trim", "old", "new", "change"], rows));
-    }
-    if !effect.poles.is_empty() {
-        let rows = effect.poles.iter().map(|it| {
-            let damping = format!("{:.4} to {:.4}", it.old.damping, it.new.damping);
-            let mode = it.mode.unwrap_or("-").to_owned();
-            vec![mode, root(it.old), root(it.new), damping]
-        });
-        blocks.push(rows_of(&["pole", "old", "new", "damping"], rows));
-    }
+    path.chars().map(escaped).collect()
 }
 
-fn root(root: Root) -> String {
-    match root.im {
-        0.0 => format!("{:.5} 1/s", root.re),
-        im => format!("{:.5} ± {im:.5}i 1/s", root.re),
+fn of_code(blocks: &mut Vec<Block>, code: Option<&[ChangedFile]>) {
+    let Some(code) = code else {
+        return;
+    };
+    let sum = |of: fn(&ChangedFile) -> usize| code.iter().map(of).sum::<usize>();
+    let (added, removed) = (sum(|it| it.added), sum(|it| it.removed));
+    let heading = format!("Generated code: +{added} −{removed} lines");
+    blocks.push(Block::Heading(heading));
+    if code.is_empty() {
+        blocks.push(Block::Line("no file changes".to_owned()));
+        return;
     }
+    let rows = code.iter();
+    let rows = rows.map(|it| {
+        vec![
+            it.path.clone(),
+            format!("+{}", it.added),
+            format!("−{}", it.removed),
+        ]
+    });
+    blocks.push(rows_of(&["file", "added", "removed"], rows));
 }

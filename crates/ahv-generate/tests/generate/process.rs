@@ -87,6 +87,69 @@ fn a_derivation_ends_with_a_process_that_is_killed() {
     eventually("the derivation goes on", || !is_alive(python.trim()));
 }
 
+/// Killed without a warning at 50 moments of its work, from the start to the end: each file is the old one or the new one, nearly always
+/// all of them, and the next run makes the tree that a whole one makes.
+#[test]
+fn a_killed_generation_leaves_each_file_old_or_new() {
+    const TABLE: &str = "generator/tables/com.toml";
+    let scratch = Scratch::small();
+    let before = scratch.snapshot("generated");
+    scratch.edit(TABLE, "max = 11000.0", "max = 12000.0");
+    let start = Instant::now();
+    let done = scratch.process(&[]).stdout(Stdio::null()).status();
+    let whole = start.elapsed();
+    assert!(done.expect("it runs").success());
+    let after = scratch.snapshot("generated");
+    let changed: Vec<usize> = (0..before.len())
+        .filter(|&it| before[it] != after[it])
+        .collect();
+    assert!(
+        before.len() == after.len() && changed.len() > 2,
+        "{changed:?}"
+    );
+    let (mut olds, mut news, mut random) = (0, 0, 19_u64);
+    for _ in 0..50 {
+        for &index in &changed {
+            fs::write(&before[index].0, &before[index].1).expect("written");
+        }
+        let mut child = scratch.process(&[]);
+        let mut child = child.stdout(Stdio::null()).spawn().expect("it runs");
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        // Now and then after the end, however fast a run is.
+        let share = (random >> 33) as f64 / f64::from(1_u32 << 31);
+        thread::sleep(whole.mul_f64(1.2 * share));
+        // It may have ended.
+        let _ = child.kill();
+        child.wait().expect("it ends");
+        let left = scratch.snapshot("generated");
+        let is_temporary = |path: &Path| {
+            let name = path.file_name().unwrap_or_default();
+            name.to_string_lossy().starts_with(".ahv-")
+        };
+        let (temporary, left): (Vec<_>, Vec<_>) =
+            left.into_iter().partition(|it| is_temporary(&it.0));
+        temporary
+            .iter()
+            .for_each(|it| fs::remove_file(&it.0).expect("removed"));
+        assert_eq!(left.len(), before.len());
+        for (index, file) in left.iter().enumerate() {
+            let is_whole = *file == before[index] || *file == after[index];
+            assert!(is_whole, "{} is neither old nor new", file.0.display());
+        }
+        olds += usize::from(left == before);
+        news += usize::from(left == after);
+        scratch.generate(&[]).expect("generated");
+        assert!(scratch.snapshot("generated") == after, "it does not mend");
+    }
+    // A kill between two of the renames leaves both kinds: they take a thousandth of a run.
+    assert!(
+        olds > 5 && news > 0 && olds + news >= 48,
+        "{olds} old, {news} new"
+    );
+}
+
 /// A crash of the interpreter in a family is a fault at its line.
 #[test]
 fn a_crash_of_the_interpreter_names_the_family() {
