@@ -111,7 +111,7 @@ impl Summary<'_> {
         };
         let with = |is: bool, what: &'static str| if is { what } else { "" };
         format!(
-            "{}: {}, {}\n{} of {} s, {} {} s, {}, seed {}{}{}; {:.3e} member-steps per second, threads {}\n\
+            "{}: {}\n{}\n{} of {} s, {} {} s, {}, seed {}{}{}\n{:.3e} member-steps per second, threads {}\n\
              at the end, with intervals of 95 % of mean and standard deviation:\n",
             self.ready.vehicle.name(),
             self.ready.place,
