@@ -6,9 +6,9 @@
 //! * [`disperse`]: trims and roots of vehicles whose parameters are drawn.
 //! * [`erased`]: all of it for any model, behind one interface.
 //! * [`dual`]: exact derivatives of a model's outputs.
-//! * [`lqr`]: the linear-quadratic regulator of a linear system; [`actuator`]: lags and limits of what moves the inputs.
 //! * [`reduction`]: a smaller linear system in the place of a large one, with its errors.
-//! * [`lqr`]: the linear-quadratic regulator of a linear system; [`margins`]: gain and phase margins of a feedback; [`actuator`]: lags and limits of what moves the inputs.
+//! * [`lqr`]: the linear-quadratic regulator of a linear system; [`margins`]: gain and phase margins of a feedback;
+//!   [`actuator`]: lags and limits of what moves the inputs.
 //! * [`monte_carlo`]: many flights with noise and dispersions, as fast as the machine goes; [`ordered`]: such work in parts.
 //! * [`statistics`]: estimates with their confidence.
 //!

@@ -85,6 +85,7 @@ fn left(
         dt: DURATION_S / f64::from(STEPS),
         snapshots: vec![u64::from(STEPS)],
         seed: SEED,
+        control_variate: false,
     };
     let progress = Progress::start(Work {
         command: "diff",
