@@ -38,6 +38,7 @@ mod forces;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
+mod global_flags;
 pub mod labels;
 mod linearize;
 mod lqr;
@@ -51,6 +52,7 @@ pub mod output;
 mod poles;
 pub mod progress;
 mod rare;
+mod reference;
 mod registry;
 mod show;
 pub mod signals;
@@ -71,11 +73,14 @@ use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand}
 
 use ahv_core::ModelList;
 use failure::{Failure, written};
+use global_flags::Console;
 
 /// Trims, linearises and flies models that were generated from tables.
 #[derive(Parser)]
 #[command(name = "ahv", version)]
 struct Cli {
+    #[command(flatten)]
+    console: Console,
     #[command(subcommand)]
     command: Command,
 }
@@ -90,6 +95,8 @@ enum Command {
     Table(tables::Arguments),
     #[cfg(feature = "generate")]
     Diff(diff::Arguments),
+    Completions(reference::Completions),
+    Man(reference::ManPages),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -143,19 +150,27 @@ pub fn run_line<L: ModelList>(
     extra: &[ExtraCommand],
 ) -> u8 {
     registry::register::<L>();
-    match asked(line, extra) {
-        Err(asked) => answer(&asked),
+    let (asked, console) = match asked(line, extra) {
+        Ok(asked) => asked,
+        Err(asked) => return answer(&asked),
+    };
+    console.apply();
+    match asked {
         // They handle signals themselves.
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Generate(arguments))) => generate::run(&arguments),
+        Asked::General(Command::Generate(arguments)) => generate::run(&arguments),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::New(arguments))) => new::run(&arguments),
+        Asked::General(Command::New(arguments)) => new::run(&arguments),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Table(arguments))) => listening(|| tables::run(&arguments)),
+        Asked::General(Command::Table(arguments)) => listening(|| tables::run(&arguments)),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Diff(arguments))) => listening(|| done(diff::run(&arguments))),
-        Ok(Asked::General(Command::Model(command))) => listening(|| done(command.run())),
-        Ok(Asked::Extra(extra, matches)) => listening(|| done((extra.run)(&matches))),
+        Asked::General(Command::Diff(arguments)) => listening(|| done(diff::run(&arguments))),
+        Asked::General(Command::Model(command)) => listening(|| done(command.run())),
+        Asked::General(Command::Completions(shell)) => {
+            listening(|| done(shell.run(command(extra))))
+        }
+        Asked::General(Command::Man(pages)) => listening(|| done(pages.run(command(extra)))),
+        Asked::Extra(extra, matches) => listening(|| done((extra.run)(&matches))),
     }
 }
 
@@ -173,16 +188,18 @@ enum Asked<'e> {
 fn asked(
     line: impl IntoIterator<Item = OsString>,
     extra: &[ExtraCommand],
-) -> Result<Asked<'_>, clap::Error> {
-    let mut matches = command(extra).try_get_matches_from(line)?;
+) -> Result<(Asked<'_>, Console), clap::Error> {
+    let line: Vec<OsString> = line.into_iter().collect();
+    let command = command(extra).color(global_flags::color(&line));
+    let mut matches = command.try_get_matches_from(line)?;
+    let console = Console::from_arg_matches(&matches)?;
     if let Some((name, matches)) = matches.subcommand()
         && let Some(extra) = extra.iter().find(|it| it.command.get_name() == name)
     {
-        return Ok(Asked::Extra(extra, matches.clone()));
+        return Ok((Asked::Extra(extra, matches.clone()), console));
     }
-    Ok(Asked::General(
-        Cli::from_arg_matches_mut(&mut matches)?.command,
-    ))
+    let command = Cli::from_arg_matches_mut(&mut matches)?.command;
+    Ok((Asked::General(command), console))
 }
 
 /// Prints help, the version, or what is wrong with the command line.
@@ -199,6 +216,7 @@ fn command(extra: &[ExtraCommand]) -> clap::Command {
     let command = Cli::command().subcommands(extra.iter().map(|it| it.command.clone()));
     command.mut_subcommands(|command| match command.get_name() {
         "diff" | "generate" | "new" | "table" => command,
+        "completions" | "man" => command.display_order(2),
         _ => command.display_order(1),
     })
 }
