@@ -14,5 +14,4 @@ fuzz_target!(|text: &str| {
     {
         assert_eq!(size, 1.0, "{text}");
     }
-    let _ = (ahv_table::in_radians(text), ahv_table::in_si(text));
 });
