@@ -9,6 +9,7 @@ mod demo;
 mod determinism;
 mod examples;
 mod firmware;
+mod guide;
 mod instructions;
 mod names;
 mod no_panic;
@@ -19,7 +20,6 @@ mod python;
 mod shell;
 mod steps;
 mod trajectory;
-mod tutorial;
 mod vectors;
 mod wheel;
 
@@ -62,8 +62,10 @@ enum Task {
     OwnVehicle,
     /// Package the library crates as for a registry, and build each from its package
     Package,
-    /// Run the commands of docs/tutorial.md, and compare what they print with what stands there
-    Tutorial,
+    /// Run the commands of the pages in docs/guide, and compare what they print with what stands there
+    Guide,
+    /// Run the commands of crates/ahv/tests/messages.txt, and write there what they print
+    Messages,
     /// Draw and compute the reference vectors of the tests again
     Vectors,
     /// List the values of the generated code whose names only say whose part they are, each with the reason
@@ -108,7 +110,12 @@ fn main() -> ExitCode {
         Task::C { all } => c::run(all),
         Task::OwnVehicle => own_vehicle::run(),
         Task::Package => packages::run(true),
-        Task::Tutorial => tutorial::run(),
+        Task::Guide => guide::run(),
+        Task::Messages => shell::run(
+            shell::cargo()
+                .args(["test", "--package", "ahv", "--test", "messages", "session"])
+                .env("AHV_WRITE_MESSAGES", "1"),
+        ),
         Task::Vectors => vectors::run(),
         Task::Names => names::run(),
         Task::Bench { peers } => bench::run(peers),

@@ -4,8 +4,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use crate::{
-    audit, book, c, determinism, firmware, instructions, no_panic, own_vehicle, packages, python,
-    shell, tutorial, wheel,
+    audit, book, c, determinism, firmware, guide, instructions, no_panic, own_vehicle, packages,
+    python, shell, wheel,
 };
 
 /// Workspaces of their own, built where the main one is: what they share of the registry is built once.
@@ -126,7 +126,7 @@ const STEPS: [Step; 32] = [
     ("packages", || {
         packages::run(false).map(|()| Outcome::Passed)
     }),
-    ("tutorial", || tutorial::run().map(|()| Outcome::Passed)),
+    ("guide", || guide::run().map(|()| Outcome::Passed)),
     ("no panic path", || {
         bare_metal(|| no_panic::run(BARE_METAL).map(|()| Outcome::Passed))
     }),

@@ -45,20 +45,23 @@ pub fn models() -> impl Iterator<Item = &'static dyn AnyModel> {
 
 /// Runs a command of the models by the words of its line, without the program's name.
 ///
-/// `diff`, `generate`, `new` and `table` speak to a terminal alone: they are a request that fails.
+/// `completions`, `diff`, `generate`, `man`, `new` and `table` run only on a command line: here they are a request that fails.
 pub fn tell(words: Vec<String>, extra: &[ExtraCommand]) -> Told {
-    let (end, said) = heard(|| match asked(line(words), extra) {
-        Err(wrong) => Err(refusal(&wrong)),
-        Ok(Asked::General(Command::Model(command))) => command.run(),
-        Ok(Asked::Extra(extra, matches)) => (extra.run)(&matches),
-        #[cfg(feature = "generate")]
-        Ok(Asked::General(_)) => Err(Failure::Request(
-            "diff, generate, new and table are commands of a terminal".to_owned(),
+    let (asked, quiet) = match asked(line(words), extra) {
+        Ok((asked, console)) => (Ok(asked), console.quiet),
+        Err(wrong) => (Err(refusal(&wrong)), false),
+    };
+    let (end, said) = heard(|| match asked? {
+        Asked::General(Command::Model(command)) => command.run(),
+        Asked::Extra(extra, matches) => (extra.run)(&matches),
+        Asked::General(_) => Err(Failure::Request(
+            "completions, diff, generate, man, new and table run only on a command line".to_owned(),
         )),
     });
+    let notes = if quiet { Vec::new() } else { said.notes };
     Told {
         text: said.text,
-        notes: said.notes,
+        notes,
         end,
     }
 }

@@ -2,6 +2,9 @@
 
 use std::cell::RefCell;
 use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use console::style;
 
 /// Why a command failed, in words for the person at the terminal.
 #[derive(Debug)]
@@ -22,7 +25,7 @@ impl Failure {
             Self::Numeric(message) => (message, 3),
             Self::Interrupted(message) => (message, interrupted),
         };
-        complain(&format!("error: {message}"));
+        say(&format!("error: {message}"));
         code
     }
 }
@@ -67,20 +70,48 @@ pub fn all<const N: usize>(outcomes: [Result<(), Failure>; N]) -> Result<(), Fai
         match (&first, &failure) {
             (Ok(()), _) => first = Err(failure),
             (_, Failure::Request(message) | Failure::Numeric(message)) => {
-                complain(&format!("error: {message}"));
+                say(&format!("error: {message}"));
             }
-            (_, Failure::Interrupted(message)) => complain(message),
+            (_, Failure::Interrupted(message)) => say(message),
         }
     }
     first
 }
 
-/// Writes a line to stderr. A closed stderr is no reason to stop.
+/// Whether notes, warnings and progress are left out.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Leaves out notes, warnings and progress of this process from now on, or prints them again.
+pub(crate) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Whether notes, warnings and progress are left out.
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Writes a note, a warning or how far work is to stderr, unless `--quiet` is given. A closed stderr is no reason to stop.
 pub fn complain(message: &str) {
+    if !is_quiet() {
+        say(message);
+    }
+}
+
+/// Writes a line to stderr, whose first word is coloured where that is asked for.
+pub(crate) fn say(message: &str) {
     if hear(|said| said.notes.push(message.to_owned())) {
         return;
     }
-    let _ = writeln!(io::stderr(), "{message}");
+    let line = match message.split_once(": ") {
+        Some(("error", rest)) => format!("{} {rest}", style("error:").for_stderr().red().bold()),
+        Some(("warning", rest)) => {
+            format!("{} {rest}", style("warning:").for_stderr().yellow().bold())
+        }
+        Some(("note", rest)) => format!("{} {rest}", style("note:").for_stderr().cyan().bold()),
+        _ => message.to_owned(),
+    };
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// Writes `text` and a line end to stdout. A reader that has gone away is no failure.

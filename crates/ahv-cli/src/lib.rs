@@ -40,6 +40,7 @@ mod forces;
 mod gains;
 #[cfg(feature = "generate")]
 mod generate;
+mod global_flags;
 mod identify;
 pub mod labels;
 mod linearize;
@@ -55,6 +56,7 @@ mod poles;
 pub mod progress;
 mod rare;
 pub mod reduce;
+mod reference;
 mod registry;
 mod show;
 pub mod signals;
@@ -75,11 +77,14 @@ use clap::{ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand}
 
 use ahv_core::ModelList;
 use failure::{Failure, written};
+use global_flags::Console;
 
 /// Trims, linearises and flies models that were generated from tables.
 #[derive(Parser)]
 #[command(name = "ahv", version)]
 struct Cli {
+    #[command(flatten)]
+    console: Console,
     #[command(subcommand)]
     command: Command,
 }
@@ -96,6 +101,8 @@ enum Command {
     Diff(diff::Arguments),
     #[cfg(feature = "generate")]
     Fit(Box<fit::Arguments>),
+    Completions(reference::Completions),
+    Man(reference::ManPages),
     #[command(flatten)]
     Model(Box<ModelCommand>),
 }
@@ -153,21 +160,29 @@ pub fn run_line<L: ModelList>(
     extra: &[ExtraCommand],
 ) -> u8 {
     registry::register::<L>();
-    match asked(line, extra) {
-        Err(asked) => answer(&asked),
+    let (asked, console) = match asked(line, extra) {
+        Ok(asked) => asked,
+        Err(asked) => return answer(&asked),
+    };
+    console.apply();
+    match asked {
         // They handle signals themselves.
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Generate(arguments))) => generate::run(&arguments),
+        Asked::General(Command::Generate(arguments)) => generate::run(&arguments),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::New(arguments))) => new::run(&arguments),
+        Asked::General(Command::New(arguments)) => new::run(&arguments),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Table(arguments))) => listening(|| tables::run(&arguments)),
+        Asked::General(Command::Table(arguments)) => listening(|| tables::run(&arguments)),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Diff(arguments))) => listening(|| done(diff::run(&arguments))),
+        Asked::General(Command::Diff(arguments)) => listening(|| done(diff::run(&arguments))),
         #[cfg(feature = "generate")]
-        Ok(Asked::General(Command::Fit(arguments))) => listening(|| done(fit::run(&arguments))),
-        Ok(Asked::General(Command::Model(command))) => listening(|| done(command.run())),
-        Ok(Asked::Extra(extra, matches)) => listening(|| done((extra.run)(&matches))),
+        Asked::General(Command::Fit(arguments)) => listening(|| done(fit::run(&arguments))),
+        Asked::General(Command::Model(command)) => listening(|| done(command.run())),
+        Asked::General(Command::Completions(shell)) => {
+            listening(|| done(shell.run(command(extra))))
+        }
+        Asked::General(Command::Man(pages)) => listening(|| done(pages.run(command(extra)))),
+        Asked::Extra(extra, matches) => listening(|| done((extra.run)(&matches))),
     }
 }
 
@@ -185,16 +200,18 @@ enum Asked<'e> {
 fn asked(
     line: impl IntoIterator<Item = OsString>,
     extra: &[ExtraCommand],
-) -> Result<Asked<'_>, clap::Error> {
-    let mut matches = command(extra).try_get_matches_from(line)?;
+) -> Result<(Asked<'_>, Console), clap::Error> {
+    let line: Vec<OsString> = line.into_iter().collect();
+    let command = command(extra).color(global_flags::color(&line));
+    let mut matches = command.try_get_matches_from(line)?;
+    let console = Console::from_arg_matches(&matches)?;
     if let Some((name, matches)) = matches.subcommand()
         && let Some(extra) = extra.iter().find(|it| it.name == name)
     {
-        return Ok(Asked::Extra(extra, matches.clone()));
+        return Ok((Asked::Extra(extra, matches.clone()), console));
     }
-    Ok(Asked::General(
-        Cli::from_arg_matches_mut(&mut matches)?.command,
-    ))
+    let command = Cli::from_arg_matches_mut(&mut matches)?.command;
+    Ok((Asked::General(command), console))
 }
 
 /// Prints help, the version, or what is wrong with the command line.
@@ -214,6 +231,7 @@ fn command(extra: &[ExtraCommand]) -> clap::Command {
     let command = Cli::command().subcommands(added);
     command.mut_subcommands(|command| match command.get_name() {
         "diff" | "generate" | "new" | "table" => command,
+        "completions" | "man" => command.display_order(2),
         _ => command.display_order(1),
     })
 }

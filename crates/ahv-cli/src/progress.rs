@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use ahv_analysis::ordered::Control;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::failure::complain;
+use crate::failure::{complain, is_quiet};
 
 /// Work shorter than this shows no bar.
 const BAR_AFTER: Duration = Duration::from_secs(1);
@@ -48,7 +48,9 @@ impl Progress {
             let started = Instant::now();
             let wait = |time| ended.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
             let done = || watched.done.load(Ordering::Relaxed);
-            if io::stderr().is_terminal() {
+            if is_quiet() {
+                // The thread ends at once.
+            } else if io::stderr().is_terminal() {
                 show_bar(work, wait, || work.line(done(), started.elapsed()), done);
             } else {
                 say_lines(wait, || complain(&work.line(done(), started.elapsed())));

@@ -12,7 +12,7 @@ use ahv_analysis::ordered::Control;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use crate::failure::{Failure, complain};
+use crate::failure::{Failure, say};
 use crate::output;
 
 /// Signals that end the work in order.
@@ -57,7 +57,7 @@ pub(crate) fn listen() -> Result<(), Failure> {
 fn obey(signal: usize) {
     STOPPED_BY.store(signal, Ordering::Relaxed);
     if !stop() {
-        complain("interrupted");
+        say("interrupted");
         output::exit_without_temporaries(exit_code());
     }
 }

@@ -1,7 +1,6 @@
 //! `ahv table`: what people do with a table before models are made of it. What is found, laid out and shown is of
 //! `ahv-review`.
 
-use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
 
 use ahv_analysis::erased::AnyModel;
@@ -133,7 +132,7 @@ impl Lint {
             Format::Text if self.json => print(&ahv_review::json(&reviewed).map_err(unwritten)?)?,
             Format::Sarif => print(&ahv_review::sarif(&reviewed).map_err(unwritten)?)?,
             Format::Text => {
-                let text = ahv_review::rendered(&reviewed, io::stdout().is_terminal());
+                let text = ahv_review::rendered(&reviewed, console::colors_enabled());
                 print(text.trim_end())?;
             }
         }

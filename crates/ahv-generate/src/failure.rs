@@ -1,7 +1,7 @@
 //! Why generation stopped, said once and clearly.
 
 use std::fmt::Write as _;
-use std::io::{self, IsTerminal as _};
+use std::io;
 use std::ops::Range;
 use std::path::Path;
 
@@ -175,7 +175,7 @@ impl Failure {
     /// The text for standard error: drawn on a terminal, plain ASCII elsewhere.
     #[must_use]
     pub fn render(&self) -> String {
-        self.render_for(io::stderr().is_terminal())
+        self.render_for(console::colors_enabled_stderr())
     }
 
     fn render_for(&self, terminal: bool) -> String {

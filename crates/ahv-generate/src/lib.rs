@@ -55,6 +55,7 @@ pub use code::{ChangedFile, changed_code};
 pub use compare::{Difference, Kept, Status};
 pub use describe::{Described, FamilyFault, describe};
 pub use failure::{Failure, TableFault};
+pub use progress::{is_quiet, set_quiet};
 pub use project::Project;
 pub use python::environment;
 pub use report::{Checked, Generated};
@@ -108,7 +109,7 @@ fn answer(args: &Args, evaluate: Evaluate<'_>) -> Result<u8, Failure> {
         if args.json {
             print(&checked.json())?;
         } else if checked.agrees() {
-            print(&checked.text())?;
+            report(&checked.text())?;
         } else {
             complain(&checked.text());
         }
@@ -116,11 +117,11 @@ fn answer(args: &Args, evaluate: Evaluate<'_>) -> Result<u8, Failure> {
         Ok(code.max(audited(args, &surroundings, evaluate)?))
     } else {
         let generated = generate(args, &surroundings)?;
-        print(&if args.json {
-            generated.json()
+        if args.json {
+            print(&generated.json())?;
         } else {
-            generated.text()
-        })?;
+            report(&generated.text())?;
+        }
         audited(args, &surroundings, evaluate)
     }
 }
@@ -143,6 +144,11 @@ fn audited(
 /// Writes to standard error; where that cannot be written, the exit code must do.
 fn complain(text: &str) {
     let _ = io::stderr().write_all(text.as_bytes());
+}
+
+/// Writes what was done to standard output, unless that is to be quiet.
+fn report(text: &str) -> Result<(), Failure> {
+    if is_quiet() { Ok(()) } else { print(text) }
 }
 
 /// Writes to standard output; a reader that has gone away (`| head`) is no failure.

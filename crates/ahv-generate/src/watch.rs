@@ -9,7 +9,7 @@ use crate::args::Args;
 use crate::failure::Failure;
 use crate::project::Project;
 use crate::surroundings::Surroundings;
-use crate::{complain, files, generate, interrupt, print, tables};
+use crate::{complain, files, generate, interrupt, is_quiet, report, tables};
 
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// How long the tables must be as they are before they are read: an editor may write a file in parts.
@@ -30,14 +30,21 @@ pub(crate) fn watch(args: &Args, surroundings: &Surroundings) -> Result<u8, Fail
         // Before the generation: what is saved during it is a change.
         let seen = look(&project);
         match generate(args, surroundings) {
-            Ok(generated) => print(&generated.text())?,
+            Ok(generated) => report(&generated.text())?,
             Err(interrupted @ Failure::Interrupted { .. }) => return Err(interrupted),
             Err(failure) => complain(&failure.render()),
         }
         let folder = project.shown(&project.tables);
-        let _ = writeln!(io::stderr(), "watching {folder}; Ctrl-C ends");
+        announce(&format!("watching {folder}; Ctrl-C ends"));
         wait_for_change(&project, seen)?;
-        let _ = writeln!(io::stderr(), "saved: generating ...");
+        announce("saved: generating ...");
+    }
+}
+
+/// Writes a line to stderr, unless that is to be quiet.
+fn announce(line: &str) {
+    if !is_quiet() {
+        let _ = writeln!(io::stderr(), "{line}");
     }
 }
 

@@ -91,7 +91,9 @@ pub fn run(args: &Args) -> u8 {
     match created {
         Ok(created) => {
             // A reader that has gone away is no failure: the repository is there.
-            let _ = io::stdout().write_all(created.text().as_bytes());
+            if !ahv_generate::is_quiet() {
+                let _ = io::stdout().write_all(created.text().as_bytes());
+            }
             ahv_generate::AGREES
         }
         Err(failure) => {

@@ -16,8 +16,11 @@ use clap::Parser;
 use math::Formulas;
 use page::{Page, read};
 
-/// Folders whose Markdown makes up the book after the project's own page, with the heading of each.
-const FOLDERS: [(&str, &str); 2] = [("docs", "Guide"), ("generated/docs", "Models")];
+/// The folder of the guide and the reference, whose summary orders them as mdBook has it.
+const DOCS: &str = "docs";
+const SUMMARY: &str = "SUMMARY.md";
+/// The folder of the generated documentation.
+const GENERATED: &str = "generated/docs";
 /// Pages of the project's root.
 const ROOT_PAGES: [&str; 2] = ["README.md", "CHANGELOG.md"];
 const LAYOUT: &str = include_str!("layout.html");
@@ -25,7 +28,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// Pages under one heading of the contents.
 struct Part {
-    title: &'static str,
+    title: String,
     pages: Vec<Page>,
 }
 
@@ -81,23 +84,17 @@ fn build(root: &Path, out: &Path) -> Result<usize, String> {
 
 /// The pages of the book, read and converted.
 fn parts(root: &Path, formulas: &Formulas) -> Result<Vec<Part>, String> {
-    let mut sources = vec![(
-        "Project",
-        ROOT_PAGES
-            .iter()
-            .map(PathBuf::from)
-            .filter(|page| root.join(page).exists())
-            .collect(),
-    )];
-    for (folder, title) in FOLDERS {
-        let found = markdown(root, folder)?;
-        if !found.is_empty() {
-            sources.push((title, found));
-        }
+    let project = ROOT_PAGES.iter().map(PathBuf::from);
+    let project = project.filter(|page| root.join(page).exists()).collect();
+    let mut sources = vec![("Project".to_owned(), project)];
+    sources.extend(summarized(root)?);
+    let generated = markdown(root, GENERATED)?;
+    if !generated.is_empty() {
+        sources.push(("Models".to_owned(), generated));
     }
     let known: BTreeSet<PathBuf> = sources
         .iter()
-        .flat_map(|(_, pages): &(_, Vec<PathBuf>)| pages.iter().cloned())
+        .flat_map(|(_, pages): &(String, Vec<PathBuf>)| pages.iter().cloned())
         .collect();
     let mut parts = Vec::new();
     for (title, paths) in sources {
@@ -110,6 +107,44 @@ fn parts(root: &Path, formulas: &Formulas) -> Result<Vec<Part>, String> {
             pages: pages?,
         });
     }
+    Ok(parts)
+}
+
+/// The parts that the summary lists: `# Title`, then `- [Page](path)`. Every page of the folder must be there.
+fn summarized(root: &Path) -> Result<Vec<(String, Vec<PathBuf>)>, String> {
+    let place = root.join(DOCS).join(SUMMARY);
+    if !place.exists() {
+        return Ok(Vec::new());
+    }
+    let summary = fs::read_to_string(&place).map_err(problem("read", &place))?;
+    let mut parts: Vec<(String, Vec<PathBuf>)> = Vec::new();
+    for line in summary.lines() {
+        if let Some(title) = line.strip_prefix("# ") {
+            parts.push((title.to_owned(), Vec::new()));
+        } else if let Some((_, link)) = line.split_once("](") {
+            let path = link.trim_end_matches(')');
+            let part = parts
+                .last_mut()
+                .ok_or("error: docs/SUMMARY.md begins without a heading")?;
+            part.1.push(Path::new(DOCS).join(path));
+        }
+    }
+    let mut listed = parts.iter().flat_map(|(_, pages)| pages);
+    for page in markdown(root, DOCS)? {
+        if !page.ends_with(SUMMARY) && !listed.clone().any(|it| *it == page) {
+            return Err(format!(
+                "error: docs/SUMMARY.md does not list {}",
+                page.display()
+            ));
+        }
+    }
+    if let Some(missing) = listed.find(|page| !root.join(page).is_file()) {
+        return Err(format!(
+            "error: docs/SUMMARY.md lists {}, which is not a file",
+            missing.display()
+        ));
+    }
+    parts.retain(|(_, pages)| !pages.is_empty());
     Ok(parts)
 }
 

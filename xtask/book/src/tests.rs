@@ -27,6 +27,10 @@ fn pages_are_linked_and_formulas_are_mathml() {
              ## The end\n\n[Back](../README.md), [models](../generated/docs/README.md)",
         ),
         (
+            "docs/SUMMARY.md",
+            "# Summary\n\n# Guide\n\n- [Guide](guide.md)\n",
+        ),
+        (
             "docs/images/p.svg",
             "<svg xmlns=\"http://www.w3.org/2000/svg\"/>",
         ),

@@ -1,4 +1,4 @@
-//! The commands of the tutorial, run as a reader runs them, one block after the other in one shell.
+//! The commands of the guide's pages, run as a reader runs them: one page after the other, in one shell, over one build.
 //!
 //! A block of `text` after a block of `sh` is what the commands print: each of its lines must be in their output, but `...`, which
 //! stands for lines that are left out.
@@ -8,9 +8,12 @@ use std::path::Path;
 
 use crate::shell;
 
-const PAGE: &str = "docs/tutorial.md";
-/// Where the repository of the tutorial is made, beside a link to this one.
-const PLACE: &str = "tests/own-vehicle/made/tutorial";
+/// Lists the pages in their order.
+const SUMMARY: &str = "docs/SUMMARY.md";
+/// How the summary links to a page whose commands are run.
+const PAGES: &str = "(guide/";
+/// Where the repository of the guide is made, beside a link to this one.
+const PLACE: &str = "tests/own-vehicle/made/guide";
 /// The folder of this repository, as the page calls it.
 const AHV: &str = "ahv";
 /// What a reader builds for speed is built here as tests are, which is sooner done.
@@ -34,12 +37,19 @@ struct Block<'a> {
     printed: Vec<&'a str>,
 }
 
-/// Runs the page.
+/// Runs the pages.
 pub(crate) fn run() -> Result<(), String> {
     let problem = |error: std::io::Error| format!("error: {PLACE}: {error}");
-    let page = fs::read_to_string(shell::root().join(PAGE))
-        .map_err(|error| format!("error: cannot read {PAGE}: {error}"))?;
-    let blocks = blocks(&page);
+    let read = |page: &str| {
+        let text = fs::read_to_string(shell::root().join(page));
+        text.map_err(|error| format!("error: cannot read {page}: {error}"))
+    };
+    let names = pages(&read(SUMMARY)?);
+    let texts = names.iter().map(|page| read(page));
+    let texts = texts.collect::<Result<Vec<String>, String>>()?;
+    let blocks: Vec<(&String, Block<'_>)> = (names.iter().zip(&texts))
+        .flat_map(|(page, text)| blocks(text).into_iter().map(move |block| (page, block)))
+        .collect();
     let place = shell::root().join(PLACE);
     if place.exists() {
         fs::remove_dir_all(&place).map_err(problem)?;
@@ -48,7 +58,7 @@ pub(crate) fn run() -> Result<(), String> {
     link(shell::root(), &place.join(AHV)).map_err(problem)?;
 
     let mut script = PRELUDE.to_owned();
-    for (number, block) in blocks.iter().enumerate() {
+    for (number, (_, block)) in blocks.iter().enumerate() {
         let commands = block.commands.join("\n");
         let out = place.join(number.to_string());
         script += &format!("{{\n{commands}\n}} > '{}'\n", out.display());
@@ -59,17 +69,26 @@ pub(crate) fn run() -> Result<(), String> {
     bash.envs([("GIT_CONFIG_GLOBAL", "/dev/null"), ("GIT_PAGER", "cat")]);
     shell::run(bash.env("CARGO_TARGET_DIR", shell::target()))?;
 
-    for (number, block) in blocks.iter().enumerate() {
+    for (number, (page, block)) in blocks.iter().enumerate() {
         let output = fs::read_to_string(place.join(number.to_string())).map_err(problem)?;
         if let Some(missing) = missing(block, &output) {
             let line = block.line;
             return Err(format!(
-                "error: the commands of {PAGE}:{line} do not print\n{missing}\nbut\n{output}"
+                "error: the commands of {page}:{line} do not print\n{missing}\nbut\n{output}"
             ));
         }
     }
-    println!("{PAGE}: {} blocks of commands", blocks.len());
+    println!("{} pages, {} blocks of commands", names.len(), blocks.len());
     Ok(())
+}
+
+/// The pages of the guide that a summary lists.
+fn pages(summary: &str) -> Vec<String> {
+    let links = summary.lines().filter_map(|line| line.split_once(PAGES));
+    let paths = links.filter_map(|(_, rest)| rest.split_once(')'));
+    paths
+        .map(|(name, _)| format!("docs/guide/{name}"))
+        .collect()
 }
 
 /// The blocks of commands of a page.
@@ -127,7 +146,7 @@ fn link(to: &Path, at: &Path) -> std::io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Block, blocks, missing};
+    use super::{Block, blocks, missing, pages};
 
     const PAGE: &str =
         "a\n```sh\nls\n```\n\n```text\nx  1\n...\n```\n```toml\ny\n```\n```sh\npwd\n```\n";
@@ -145,6 +164,12 @@ mod tests {
             printed: vec![],
         };
         assert_eq!(blocks(PAGE), [first, second]);
+    }
+
+    #[test]
+    fn the_summary_orders_the_pages() {
+        let summary = "# Guide\n\n- [B](guide/b.md)\n- [A](guide/a.md)\n- [C](c.md)\n";
+        assert_eq!(pages(summary), ["docs/guide/b.md", "docs/guide/a.md"]);
     }
 
     #[test]
