@@ -31,7 +31,7 @@ typedef struct {{ it.name }} {
 
 /* One step of the classical Runge-Kutta scheme of order 4, dt in s, at held inputs.
  *
- * Returns 0 if the step was made. Otherwise the state is as it was, and the result is -1 if dt is not a positive
+ * Returns 0 if the step was made. Otherwise the state is as it was, and the result is -1 if dt is not a finite, positive
  * number, or k if component k of the state, counted from 1, would not be finite. */
 int {{ prefix }}rk4_step(
     const {{ own }}Prepared *p,

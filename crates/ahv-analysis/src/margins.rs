@@ -123,7 +123,11 @@ impl Loop {
             ((modulus(value) - 1.0).abs() <= CROSSING).then(|| (-value.im).atan2(-value.re).abs())
         });
         Ok(Margin {
-            least_gain: below.into_iter().max_by(f64::total_cmp),
+            // What rounding leaves of a gain of 0 is none.
+            least_gain: below
+                .into_iter()
+                .max_by(f64::total_cmp)
+                .filter(|&gain| gain > CROSSING),
             most_gain: above.into_iter().min_by(f64::total_cmp),
             phase: phases.min_by(f64::total_cmp),
         })

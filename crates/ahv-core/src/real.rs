@@ -55,7 +55,7 @@ pub trait Real:
     /// e to the power `self`.
     fn exp(self) -> Self;
 
-    /// Tangent of an angle in rad; above 10⁶ rad the quotient of sine and cosine, within 2 ulp.
+    /// Tangent of an angle in rad; above 10⁶ rad the quotient of sine and cosine, within 3 ulp.
     fn tan(self) -> Self;
 
     /// Inverse sine in rad, from −π/2 to π/2; NaN beyond −1 and 1.

@@ -128,7 +128,10 @@ impl Difference {
         TextDiff::from_lines(&self.old, &self.new)
             .unified_diff()
             .context_radius(3)
-            .header(&format!("a/{shown}"), &format!("b/{shown}"))
+            .header(
+                &format!("a/{}", shown.trim_start_matches('/')),
+                &format!("b/{}", shown.trim_start_matches('/')),
+            )
             .to_string()
     }
 }

@@ -11,6 +11,9 @@ use miette::{
 
 use crate::excerpt::Excerpt;
 
+/// Faults that are shown at a time: more than that is one fault that stands behind them all.
+const MOST_SHOWN: usize = 100;
+
 /// Something that a table may not say, with the place where it says so.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
@@ -182,7 +185,11 @@ impl Failure {
         let mut text = String::new();
         match self {
             Self::Tables(faults) => {
-                text.extend(faults.iter().map(|fault| fault.render(terminal)));
+                let shown = faults.iter().take(MOST_SHOWN);
+                text.extend(shown.map(|fault| fault.render(terminal)));
+                if let more @ 1.. = faults.len().saturating_sub(MOST_SHOWN) {
+                    let _ = writeln!(text, "error: and {more} more faults");
+                }
             }
             Self::Other { message, help } => {
                 let _ = writeln!(text, "error: {message}");

@@ -260,7 +260,9 @@ fn derive_and_emit(
         known
     } else {
         let python = python::for_generation(surroundings)?;
-        derive::derive(&python, tables, &known)?
+        let irs = derive::derive(&python, tables, &known)?;
+        tables.hold_still(project)?;
+        irs
     };
     let after = Instant::now();
     let tree = emit(args, project, tables, &irs, trusted)?;

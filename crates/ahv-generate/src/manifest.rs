@@ -35,9 +35,10 @@ pub(crate) fn refuse_other_language(args: &Args, project: &Project) -> Result<()
         return Ok(());
     };
     let found = match other.language.as_deref() {
-        None => Language::Rust.shown(),
-        Some("c") => Language::C.shown(),
-        Some(other) => other,
+        None => Language::Rust.shown().to_owned(),
+        Some("c") => Language::C.shown().to_owned(),
+        // Whatever stands there must not act on a terminal.
+        Some(other) => format!("{other:?}"),
     };
     Err(Failure::new(format!(
         "{} holds models in {found}; models in {} need a folder of their own",

@@ -23,8 +23,12 @@ pub(crate) fn of_table(
     let text = Text::parse(text.to_owned())?;
     let mut shape = format!("{file_name:?}, ");
     for script in scripts {
-        let script = String::from_utf8_lossy(script).replace("\r\n", "\n");
-        shape.push_str(&format!("{script:?}, "));
+        // Byte by byte, whatever its encoding; its line ends are those that git gave it.
+        for line in script.split(|&byte| byte == b'\n') {
+            let line = line.strip_suffix(b"\r").unwrap_or(line);
+            shape.push_str(&format!("{}\\n", line.escape_ascii()));
+        }
+        shape.push_str(", ");
     }
     table(&mut shape, &mut Vec::new(), text.root());
     Ok(sha256(&shape))
@@ -66,7 +70,8 @@ fn value<'a>(shape: &mut String, path: &mut Vec<&'a str>, value: &'a Value) {
         Value::InlineTable(inner) => table(shape, path, inner),
         _ if is_number(value) && is_free(path) => shape.push('#'),
         // Each with a mark of its type: a date is no text of the same letters.
-        Value::String(text) => shape.push_str(&format!("{:?}", text.value())),
+        // In a text of several lines the ends are those that git gave the file.
+        Value::String(text) => shape.push_str(&format!("{:?}", text.value().replace("\r\n", "\n"))),
         Value::Integer(number) => shape.push_str(&format!("i{}", number.value())),
         Value::Float(number) => shape.push_str(&format!("f{:?}", number.value())),
         Value::Boolean(flag) => shape.push_str(&format!("b{}", flag.value())),
@@ -113,6 +118,18 @@ mod tests {
     fn edited(from: &str, to: &str) -> String {
         assert!(TABLE.contains(from), "no {from:?}");
         hash(&TABLE.replacen(from, to, 1))
+    }
+
+    #[test]
+    fn scripts_count_by_their_bytes_but_not_by_their_line_ends() {
+        let of = |script: &[u8]| of_table("t.toml", TABLE, &[script.to_vec()]).expect("TOML");
+        // Neither is UTF-8.
+        assert_ne!(of(b"a = '\xe4'\n"), of(b"a = '\xf6'\n"));
+        assert_ne!(of(b"a\nb"), of(b"a\\nb"));
+        assert_eq!(of(b"a\nb\n"), of(b"a\r\nb\r\n"));
+        let text = TABLE.replace("s = \"1979-05-27\"", "s = \"\"\"one\ntwo\"\"\"");
+        assert_eq!(hash(&text), hash(&text.replace('\n', "\r\n")));
+        assert_ne!(hash(&text), hash(TABLE));
     }
 
     #[test]

@@ -120,6 +120,35 @@ impl Tables {
         }
     }
 
+    /// Whether the files are still as they were read: what is derived from them is read again by Python.
+    ///
+    /// # Errors
+    /// [`Failure::Other`] with the file that was changed meanwhile, those of [`Self::load`].
+    pub(crate) fn hold_still(&self, project: &Project) -> Result<(), Failure> {
+        let now = Self::load(project)?;
+        let texts = |tables: &Self| -> Vec<(PathBuf, String)> {
+            let sources = tables.sources.iter();
+            sources
+                .map(|it| (it.path.clone(), it.text.clone()))
+                .collect()
+        };
+        if texts(self) == texts(&now) && self.structure == now.structure {
+            return Ok(());
+        }
+        let changed = self
+            .sources
+            .iter()
+            .zip(&self.parsed)
+            .find(|(source, table)| {
+                let text = now.sources.iter().find(|it| it.path == source.path);
+                text.is_none_or(|it| it.text != source.text)
+                    || now.structure.get(&table.name) != self.structure.get(&table.name)
+            });
+        let changed = changed.map_or("the folder of the tables", |(source, _)| &source.shown);
+        let message = format!("{changed}, or a file beside it, was changed while it was derived");
+        Err(Failure::new(message).with_help("generate again"))
+    }
+
     /// One table by itself.
     ///
     /// # Errors

@@ -181,8 +181,6 @@ pub fn jacobians_values_from<R: Real>(
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 171 operations: 46 additions, 120 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -203,8 +201,6 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 /// for less than one after the other, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 215 operations: 65 additions, 145 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

@@ -176,8 +176,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 134 operations: 9 additions, 121 multiplications, 4 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);

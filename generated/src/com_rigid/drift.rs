@@ -21,8 +21,6 @@ pub fn drift_from<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>, i: &In
 }
 
 /// Time derivative of the state, eq. (1).
-///
-/// 77 operations: 25 additions, 47 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

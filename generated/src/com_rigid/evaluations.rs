@@ -6,56 +6,42 @@ use super::{Input, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Air density, eq. (2). Unit: slug/ft^3.
-///
-/// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
-///
-/// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).dynamic_pressure
 }
 
 /// Lift coefficient, eq. (3). Unit: 1.
-///
-/// 4 operations: 2 additions, 2 multiplications.
 #[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_l
 }
 
 /// Drag coefficient, eq. (3). Unit: 1.
-///
-/// 10 operations: 4 additions, 6 multiplications.
 #[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_d
 }
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
-///
-/// 7 operations: 3 additions, 4 multiplications.
 #[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_m
 }
 
 /// Thrust, eq. (3). Unit: lb/ft.
-///
-/// 16 operations: 7 additions, 9 multiplications.
 #[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).thrust
 }
 
 /// Lift, eq. (2). Unit: lb/ft.
-///
-/// 13 operations: 3 additions, 9 multiplications, 1 exp.
 #[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -63,16 +49,12 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Drag, eq. (2). Unit: lb/ft.
-///
-/// 19 operations: 5 additions, 13 multiplications, 1 exp.
 #[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).drag
 }
 
 /// Pitching moment, eq. (2). Unit: lb.
-///
-/// 34 operations: 12 additions, 21 multiplications, 1 exp.
 #[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).pitching_moment

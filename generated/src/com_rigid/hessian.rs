@@ -149,8 +149,6 @@ fn hessian_by_alpha<R: Real>(
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 203 operations: 46 additions, 152 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);

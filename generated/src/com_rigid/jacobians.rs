@@ -134,8 +134,6 @@ pub fn jacobians_values_from<R: Real>(
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 149 operations: 38 additions, 106 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -156,8 +154,6 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 /// for less than one after the other, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 167 operations: 44 additions, 118 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

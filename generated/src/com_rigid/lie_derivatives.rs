@@ -7,16 +7,12 @@ use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 /// Lie derivative of the velocity along the drift at the held input, eq. (1). Unit: ft/s^2.
-///
-/// 46 operations: 15 additions, 27 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).velocity_rate
 }
 
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (1).
-///
-/// 23 operations: 5 additions, 16 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     let i = intermediates(x, u, p);
@@ -28,16 +24,12 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
 }
 
 /// Lie derivative of the gamma along the drift at the held input, eq. (1). Unit: rad/s.
-///
-/// 45 operations: 14 additions, 26 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).gamma_rate
 }
 
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (1).
-///
-/// 20 operations: 4 additions, 13 multiplications, 1 division, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     let i = intermediates(x, u, p);
@@ -49,16 +41,12 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
 }
 
 /// Lie derivative of the altitude along the drift at the held input, eq. (1). Unit: ft/s.
-///
-/// 2 operations: 1 multiplication, 1 sin_cos.
 #[inline(always)]
 pub fn L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).altitude_rate
 }
 
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (1). Unit: ft/s^2.
-///
-/// 68 operations: 21 additions, 42 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -67,8 +55,6 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (1).
-///
-/// 38 operations: 7 additions, 27 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     let i = intermediates(x, u, p);

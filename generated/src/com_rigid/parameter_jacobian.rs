@@ -187,8 +187,6 @@ fn parameter_jacobian_by_c_m<R: Real>(
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 235 operations: 25 additions, 205 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);

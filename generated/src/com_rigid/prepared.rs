@@ -31,8 +31,6 @@ ahv_core::record! {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 42 operations: 38 multiplications, 4 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
 

@@ -49,8 +49,6 @@ pub fn diffusion_values_from<R: Real>(
 /// w_alpha and w_q are derivatives of the drift; the modes are driven as in (17), eq. (17).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 99 operations: 28 additions, 66 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn diffusion_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
@@ -66,8 +64,6 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).
-///
-/// 205 operations: 75 additions, 125 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
@@ -108,8 +104,6 @@ pub fn noise_increment_from<R: Real>(
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).
-///
-/// 122 operations: 37 additions, 80 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let i = intermediates(x, u, p);
@@ -119,8 +113,6 @@ pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw:
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
 /// (17).
-///
-/// 228 operations: 84 additions, 139 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,

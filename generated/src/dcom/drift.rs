@@ -38,8 +38,6 @@ pub fn drift_from<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Int
 }
 
 /// Time derivative of the state, eq. (1).
-///
-/// 151 operations: 60 additions, 86 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

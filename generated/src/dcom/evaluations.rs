@@ -6,64 +6,48 @@ use super::{Input, Prepared, State, intermediates};
 use ahv_core::Real;
 
 /// Air density, eq. (2). Unit: slug/ft^3.
-///
-/// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
-///
-/// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).dynamic_pressure
 }
 
 /// Lift coefficient, eq. (3). Unit: 1.
-///
-/// 13 operations: 6 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_l<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_l
 }
 
 /// Drag coefficient, eq. (3). Unit: 1.
-///
-/// 24 operations: 10 additions, 14 multiplications.
 #[inline(always)]
 pub fn c_d<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_d
 }
 
 /// Pitching-moment coefficient, eq. (3). Unit: 1.
-///
-/// 18 operations: 8 additions, 10 multiplications.
 #[inline(always)]
 pub fn c_m<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_m
 }
 
 /// Thrust coefficient, eq. (3). Unit: 1.
-///
-/// 22 operations: 10 additions, 12 multiplications.
 #[inline(always)]
 pub fn c_t<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_t
 }
 
 /// Thrust, eq. (2). Unit: lb/ft.
-///
-/// 31 operations: 11 additions, 19 multiplications, 1 exp.
 #[inline(always)]
 pub fn thrust<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).thrust
 }
 
 /// Lift, eq. (2). Unit: lb/ft.
-///
-/// 22 operations: 7 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -71,64 +55,48 @@ pub fn lift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Drag, eq. (2). Unit: lb/ft.
-///
-/// 33 operations: 11 additions, 21 multiplications, 1 exp.
 #[inline(always)]
 pub fn drag<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).drag
 }
 
 /// Pitching moment, eq. (2). Unit: lb.
-///
-/// 52 operations: 20 additions, 31 multiplications, 1 exp.
 #[inline(always)]
 pub fn pitching_moment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).pitching_moment
 }
 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
-///
-/// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_n_1
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_1
 }
 
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
-///
-/// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_n_2
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_2
 }
 
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
-///
-/// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_n_3
 }
 
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_3

@@ -215,8 +215,6 @@ pub fn jacobians_values_from<R: Real>(
 /// Derivatives of the drift with respect to the state and to the input, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 275 operations: 82 additions, 188 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -237,8 +235,6 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 /// for less than one after the other, eq. (1).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 306 operations: 93 additions, 208 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

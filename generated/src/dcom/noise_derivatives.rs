@@ -22,8 +22,6 @@ ahv_core::entries! {
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (17).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 271 operations: 71 additions, 195 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
@@ -125,8 +123,6 @@ pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
 /// (17).
-///
-/// 192 operations: 55 additions, 132 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

@@ -210,8 +210,6 @@ fn prepare_part_2<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 149 operations: 10 additions, 133 multiplications, 5 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);

@@ -17,8 +17,6 @@ ahv_core::entries! {
 /// (24) share one white noise, eq. (17).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// No operations.
 #[inline(always)]
 pub fn diffusion_values<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let mut diffusion = DiffusionEntries::splat(R::ZERO);
@@ -35,8 +33,6 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (17).
-///
-/// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
 pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let drift = drift(x, u, p);
@@ -45,8 +41,6 @@ pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (17).
-///
-/// 2 operations: 2 multiplications.
 #[inline(always)]
 pub fn noise_increment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     State {
@@ -58,8 +52,6 @@ pub fn noise_increment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, d
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
 /// (17).
-///
-/// 7 operations: 2 additions, 5 multiplications.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,

@@ -6,8 +6,6 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 /// Time derivative of the state, eq. (5).
-///
-/// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     // Response of the mode, (5)

@@ -14,8 +14,6 @@ ahv_core::entries! {
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (5).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// No operations.
 #[inline(always)]
 pub fn hessian_values<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> HessianEntries<R> {
     HessianEntries::splat(R::ZERO)

@@ -24,8 +24,6 @@ ahv_core::entries! {
 /// Derivatives of the drift with respect to the state and to the input, eq. (5).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// No operations.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     _x: &State<R>, _u: &Input<R>, p: &Prepared<R>,
@@ -51,8 +49,6 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 /// for less than one after the other, eq. (5).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 5 operations: 2 additions, 3 multiplications.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

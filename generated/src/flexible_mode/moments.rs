@@ -6,8 +6,6 @@ use super::{Input, Prepared, State};
 use ahv_core::Real;
 
 /// Decay rate (1/s) and diffusion that match decay rate and gain at zero frequency, eq. (23).
-///
-/// No operations.
 #[inline(always)]
 pub fn reduction_printed<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> (R, R) {
     // Result
@@ -18,16 +16,12 @@ pub fn reduction_printed<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>)
 
 /// Stationary variance of the coloured noise that matches decay rate and gain at zero frequency, eq. (24).
 /// Unit: ft*slug.
-///
-/// No operations.
 #[inline(always)]
 pub fn chi_variance_printed<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.half_zeta_sigma_2_over_omega_stiffness
 }
 
 /// Decay rate (1/s) and diffusion that match decay rate and variance, eq. (23).
-///
-/// No operations.
 #[inline(always)]
 pub fn reduction_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> (R, R) {
     // Result
@@ -37,16 +31,12 @@ pub fn reduction_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>
 }
 
 /// Stationary variance of the coloured noise that matches decay rate and variance, eq. (24). Unit: ft*slug.
-///
-/// No operations.
 #[inline(always)]
 pub fn chi_variance_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
 /// Decay rate (1/s) and diffusion that match variance and spectrum at zero frequency, eq. (23).
-///
-/// No operations.
 #[inline(always)]
 pub fn reduction_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> (R, R) {
     // Result
@@ -57,40 +47,30 @@ pub fn reduction_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) 
 
 /// Stationary variance of the coloured noise that matches variance and spectrum at zero frequency, eq. (24).
 /// Unit: ft*slug.
-///
-/// No operations.
 #[inline(always)]
 pub fn chi_variance_moment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
 /// Stationary variance of the mode, eq. (17). Unit: ft*slug.
-///
-/// No operations.
 #[inline(always)]
 pub fn eta_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.quarter_sigma_2_over_zeta_omega_stiffness
 }
 
 /// Stationary variance of its rate, eq. (17). Unit: ft*slug/s^2.
-///
-/// No operations.
 #[inline(always)]
 pub fn eta_dot_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.quarter_sigma_2_over_zeta_omega
 }
 
 /// Stationary variance of the coloured noise, eq. (24). Unit: ft*slug.
-///
-/// No operations.
 #[inline(always)]
 pub fn chi_variance<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> R {
     p.half_chi_diffusion_2_over_chi_decay
 }
 
 /// Variance of the coloured noise at a time, from rest, eq. (24). Unit: ft*slug.
-///
-/// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn chi_variance_at<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     let exp_minus_two_chi_decay_time = (p.minus_two_chi_decay * time).exp();
@@ -99,8 +79,6 @@ pub fn chi_variance_at<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, t
 }
 
 /// Stationary autocorrelation of the coloured noise at a lag, eq. (24). Unit: ft*slug.
-///
-/// 3 operations: 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn chi_autocorrelation<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     let exp_minus_chi_decay_time = (-p.chi_decay * time).exp();
@@ -110,8 +88,6 @@ pub fn chi_autocorrelation<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R
 
 /// Two-sided spectral density of the mode at an angular frequency, for white noise of intensity sigma^2, eq.
 /// (17). Unit: ft*slug*s.
-///
-/// 10 operations: 3 additions, 6 multiplications, 1 division.
 #[inline(always)]
 pub fn eta_spectrum<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, frequency: R) -> R {
     let omega_minus_frequency = p.omega - frequency;
@@ -127,8 +103,6 @@ pub fn eta_spectrum<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, freq
 }
 
 /// Two-sided spectral density of the coloured noise at an angular frequency, eq. (24). Unit: ft*slug*s.
-///
-/// 4 operations: 1 addition, 2 multiplications, 1 division.
 #[inline(always)]
 pub fn chi_spectrum<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, frequency: R) -> R {
     let frequency_2 = frequency * frequency;
@@ -138,8 +112,6 @@ pub fn chi_spectrum<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, freq
 }
 
 /// Variance of the mode at a time, from rest, for zeta < 1, eq. (17). Unit: ft*slug.
-///
-/// 15 operations: 3 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn eta_variance_at_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
@@ -158,8 +130,6 @@ pub fn eta_variance_at_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Pr
 }
 
 /// Stationary autocorrelation of the mode at a lag, for zeta < 1, eq. (17). Unit: ft*slug.
-///
-/// 9 operations: 1 addition, 6 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn eta_autocorrelation_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
@@ -173,8 +143,6 @@ pub fn eta_autocorrelation_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p:
 }
 
 /// Variance of the mode at a time, from rest, for zeta = 1, whatever zeta says, eq. (17). Unit: ft*slug.
-///
-/// 11 operations: 3 additions, 7 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_variance_at_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (13)
@@ -191,8 +159,6 @@ pub fn eta_variance_at_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepa
 
 /// Stationary autocorrelation of the mode at a lag, for zeta = 1, whatever zeta says, eq. (17). Unit:
 /// ft*slug.
-///
-/// 5 operations: 1 addition, 3 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_autocorrelation_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (13)
@@ -203,8 +169,6 @@ pub fn eta_autocorrelation_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &P
 }
 
 /// Variance of the mode at a time, from rest, for zeta > 1, eq. (17). Unit: ft*slug.
-///
-/// 15 operations: 5 additions, 8 multiplications, 2 exp.
 #[inline(always)]
 pub fn eta_variance_at_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)
@@ -223,8 +187,6 @@ pub fn eta_variance_at_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Pre
 }
 
 /// Stationary autocorrelation of the mode at a lag, for zeta > 1, eq. (17). Unit: ft*slug.
-///
-/// 8 operations: 1 addition, 5 multiplications, 2 exp.
 #[inline(always)]
 pub fn eta_autocorrelation_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> R {
     // Response of the mode, (14)

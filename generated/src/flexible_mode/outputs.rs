@@ -6,8 +6,6 @@ use super::{Input, Outputs, Prepared, State};
 use ahv_core::Real;
 
 /// Quantities that people look at, which are not states.
-///
-/// 1 operation: 1 multiplication.
 #[inline(always)]
 pub fn outputs<R: Real>(_x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Outputs<R> {
     // Response of the mode, (15)

@@ -16,8 +16,6 @@ ahv_core::entries! {
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (5).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 7 operations: 1 addition, 6 multiplications.
 #[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let mut parameter = ParameterJacobianEntries::splat(R::ZERO);

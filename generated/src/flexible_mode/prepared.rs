@@ -37,8 +37,6 @@ ahv_core::record! {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 94 operations: 13 additions, 71 multiplications, 8 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
 

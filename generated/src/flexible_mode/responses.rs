@@ -6,8 +6,6 @@ use super::{Input, Prepared, State, StateJacobian};
 use ahv_core::{Real, Vector};
 
 /// Transition matrix of mode and coloured noise over a time, for zeta < 1, eq. (14).
-///
-/// 16 operations: 2 additions, 11 multiplications, 1 sin_cos, 2 exp.
 #[inline(always)]
 pub fn transition_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> StateJacobian<R> {
     // Response of the mode, (14)
@@ -36,8 +34,6 @@ pub fn transition_underdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepare
 }
 
 /// State after a time under a constant force and no noise, for zeta < 1; (15) has one sign wrong, eq. (15).
-///
-/// 24 operations: 6 additions, 15 multiplications, 1 sin_cos, 2 exp.
 #[inline(always)]
 pub fn response_underdamped<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, time: R) -> State<R> {
     // Response of the mode, (15)
@@ -62,8 +58,6 @@ pub fn response_underdamped<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>
 }
 
 /// Transition matrix of mode and coloured noise over a time, for zeta = 1, whatever zeta says, eq. (14).
-///
-/// 11 operations: 2 additions, 7 multiplications, 2 exp.
 #[inline(always)]
 pub fn transition_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> StateJacobian<R> {
     // Response of the mode, (13)
@@ -86,8 +80,6 @@ pub fn transition_critical<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R
 
 /// State after a time under a constant force and no noise, for zeta = 1, whatever zeta says; (15) has one
 /// sign wrong, eq. (15).
-///
-/// 19 operations: 6 additions, 11 multiplications, 2 exp.
 #[inline(always)]
 pub fn response_critical<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, time: R) -> State<R> {
     // Response of the mode, (15)
@@ -109,8 +101,6 @@ pub fn response_critical<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, t
 }
 
 /// Transition matrix of mode and coloured noise over a time, for zeta > 1, eq. (14).
-///
-/// 18 operations: 4 additions, 11 multiplications, 3 exp.
 #[inline(always)]
 pub fn transition_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, time: R) -> StateJacobian<R> {
     // Response of the mode, (14)
@@ -138,8 +128,6 @@ pub fn transition_overdamped<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared
 }
 
 /// State after a time under a constant force and no noise, for zeta > 1; (15) has one sign wrong, eq. (15).
-///
-/// 27 operations: 8 additions, 16 multiplications, 3 exp.
 #[inline(always)]
 pub fn response_overdamped<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, time: R) -> State<R> {
     // Response of the mode, (15)

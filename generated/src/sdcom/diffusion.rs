@@ -46,8 +46,6 @@ pub fn diffusion_values_from<R: Real>(
 /// w_alpha and w_q are derivatives of the drift, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 159 operations: 56 additions, 98 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn diffusion_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
@@ -63,8 +61,6 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
-///
-/// 226 operations: 84 additions, 137 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
@@ -99,8 +95,6 @@ pub fn noise_increment_from<R: Real>(
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
-///
-/// 176 operations: 62 additions, 109 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let i = intermediates(x, u, p);
@@ -110,8 +104,6 @@ pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw:
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
 /// (27).
-///
-/// 243 operations: 90 additions, 148 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,

@@ -28,8 +28,6 @@ ahv_core::entries! {
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 466 operations: 140 additions, 321 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
@@ -123,8 +121,6 @@ pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
 /// (27).
-///
-/// 324 operations: 109 additions, 210 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

@@ -293,8 +293,6 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 241 operations: 34 additions, 195 multiplications, 11 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);

@@ -7,8 +7,6 @@ use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
-///
-/// 91 operations: 32 additions, 55 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -37,8 +35,6 @@ pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Coefficient of phi (1) in the velocity rate, eq. (28). Unit: ft/s^2.
-///
-/// 20 operations: 4 additions, 14 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -47,8 +43,6 @@ pub fn g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
-///
-/// 21 operations: 4 additions, 15 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn h_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -58,8 +52,6 @@ pub fn h_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 
 /// Derivative of the velocity rate with respect to the angle of attack, at frozen inputs, eq. (28). Unit:
 /// ft/s^2/rad.
-///
-/// 111 operations: 44 additions, 65 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -68,8 +60,6 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
-///
-/// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -87,8 +77,6 @@ pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
-///
-/// 92 operations: 31 additions, 56 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -109,8 +97,6 @@ pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
-///
-/// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -122,8 +108,6 @@ pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
-///
-/// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn h_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -132,8 +116,6 @@ pub fn h_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 }
 
 /// Derivative of the gamma rate with respect to the angle of attack, at frozen inputs, eq. (30). Unit: 1/s.
-///
-/// 108 operations: 43 additions, 63 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -142,8 +124,6 @@ pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
-///
-/// 58 operations: 19 additions, 37 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -156,8 +136,6 @@ pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
-///
-/// 99 operations: 34 additions, 60 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -185,16 +163,12 @@ pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
-///
-/// No operations.
 #[inline(always)]
 pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
     R::ONE
 }
 
 /// Derivatives of the alpha rate with respect to the coloured noises chi, eq. (33).
-///
-/// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn h_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -203,8 +177,6 @@ pub fn h_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 }
 
 /// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
-///
-/// 108 operations: 43 additions, 63 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -213,8 +185,6 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
-///
-/// 58 operations: 19 additions, 37 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -229,8 +199,6 @@ pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
-///
-/// 87 operations: 31 additions, 55 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -263,8 +231,6 @@ pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Coefficient of delta_e (rad) in the pitch_rate rate, eq. (34). Unit: 1/s^2.
-///
-/// 9 operations: 1 addition, 7 multiplications, 1 exp.
 #[inline(always)]
 pub fn g_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -272,8 +238,6 @@ pub fn g_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
-///
-/// 14 operations: 1 addition, 12 multiplications, 1 exp.
 #[inline(always)]
 pub fn h_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -287,8 +251,6 @@ pub fn h_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 
 /// Derivative of the pitch_rate rate with respect to the angle of attack, at frozen inputs, eq. (34). Unit:
 /// 1/s^2.
-///
-/// 51 operations: 17 additions, 33 multiplications, 1 exp.
 #[inline(always)]
 pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -297,8 +259,6 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_Q from the static flexible coordinates, eq. (35). Unit: rad/s^2.
-///
-/// 57 operations: 19 additions, 37 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -317,8 +277,6 @@ pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 
 /// Total derivative of the pitch acceleration with respect to the elevator, through the generalized forces as
 /// well, eq. (34). Unit: 1/s^2.
-///
-/// 31 operations: 7 additions, 23 multiplications, 1 exp.
 #[inline(always)]
 pub fn g_Q_total<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);

@@ -20,8 +20,6 @@ ahv_core::entries! {
 /// Ornstein-Uhlenbeck process of rms gust_rms, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// No operations.
 #[inline(always)]
 pub fn diffusion_values<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let mut diffusion = DiffusionEntries::splat(R::ZERO);
@@ -43,8 +41,6 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
-///
-/// 150 operations: 58 additions, 87 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
@@ -54,8 +50,6 @@ pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>)
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
-///
-/// 10 operations: 2 additions, 8 multiplications.
 #[inline(always)]
 pub fn noise_increment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let shared_noise_dxi_1 = p.shared_noise * dw.xi_1;
@@ -75,8 +69,6 @@ pub fn noise_increment<R: Real>(_x: &State<R>, _u: &Input<R>, p: &Prepared<R>, d
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
 /// (27).
-///
-/// 160 operations: 60 additions, 95 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,

@@ -30,8 +30,6 @@ pub fn drift_from<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Int
 }
 
 /// Time derivative of the state, eq. (27).
-///
-/// 150 operations: 58 additions, 87 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

@@ -303,8 +303,6 @@ fn hessian_by_alpha_gust<R: Real>(hessian: &mut HessianEntries<R>, p: &Prepared<
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 764 operations: 249 additions, 510 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);

@@ -7,16 +7,12 @@ use super::{Input, Prepared, State, intermediates, slopes};
 use ahv_core::Real;
 
 /// Lie derivative of the velocity along the drift at the held input, eq. (27). Unit: ft/s^2.
-///
-/// 101 operations: 40 additions, 57 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).velocity_rate
 }
 
 /// Lie derivatives of the velocity along the input columns: its relative degree is 1, eq. (27).
-///
-/// 75 operations: 21 additions, 52 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     let i = intermediates(x, u, p);
@@ -29,16 +25,12 @@ pub fn L_g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
 }
 
 /// Lie derivative of the gamma along the drift at the held input, eq. (27). Unit: rad/s.
-///
-/// 98 operations: 38 additions, 55 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).gamma_rate
 }
 
 /// Lie derivatives of the gamma along the input columns: its relative degree is 1, eq. (27).
-///
-/// 62 operations: 17 additions, 43 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     let i = intermediates(x, u, p);
@@ -51,16 +43,12 @@ pub fn L_g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<
 }
 
 /// Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s.
-///
-/// 2 operations: 1 multiplication, 1 sin_cos.
 #[inline(always)]
 pub fn L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).altitude_rate
 }
 
 /// Second Lie derivative of the altitude along the drift at the held input, eq. (27). Unit: ft/s^2.
-///
-/// 129 operations: 50 additions, 74 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -69,8 +57,6 @@ pub fn L_f2_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Lie derivatives of L_f h along the input columns: the relative degree of the altitude is 2, eq. (27).
-///
-/// 108 operations: 32 additions, 73 multiplications, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn L_g_L_f_h<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Input<R> {
     let i = intermediates(x, u, p);

@@ -14,8 +14,6 @@ ahv_core::entries! {
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// No operations.
 #[inline(always)]
 pub fn noise_derivatives_values<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     NoiseDerivativesEntries::splat(R::ZERO)
@@ -29,8 +27,6 @@ pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
 /// (27).
-///
-/// No operations.
 #[inline(always)]
 pub fn ito_correction<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> State<R> {
     State {

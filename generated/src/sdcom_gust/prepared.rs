@@ -284,8 +284,6 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 234 operations: 34 additions, 186 multiplications, 12 divisions, 2 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);

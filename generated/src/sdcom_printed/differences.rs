@@ -7,8 +7,6 @@ use super::{Input, Prepared, State, curvatures, intermediates, noise_slopes, sen
 use ahv_core::Real;
 
 /// Delta f of (27): the velocity rate of the exact form less that of the printed one, eq. (27). Unit: ft/s^2.
-///
-/// 138 operations: 56 additions, 78 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -52,8 +50,6 @@ pub fn delta_f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Delta f of (27): the gamma rate of the exact form less that of the printed one, eq. (27). Unit: rad/s.
-///
-/// 131 operations: 53 additions, 73 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -91,8 +87,6 @@ pub fn delta_f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 }
 
 /// Delta f of (27): the alpha rate of the exact form less that of the printed one, eq. (27). Unit: rad/s.
-///
-/// 131 operations: 55 additions, 71 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -132,8 +126,6 @@ pub fn delta_f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 
 /// Delta f of (27): the pitch_rate rate of the exact form less that of the printed one, eq. (27). Unit:
 /// rad/s^2.
-///
-/// 119 operations: 49 additions, 69 multiplications, 1 exp.
 #[inline(always)]
 pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -172,8 +164,6 @@ pub fn delta_f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// H of the velocity row in the exact form less that of the printed one, eq. (28). Unit: ft/s^2/rad.
-///
-/// 118 operations: 47 additions, 69 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -227,8 +217,6 @@ pub fn delta_H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// H of the gamma row in the exact form less that of the printed one, eq. (30). Unit: 1/s.
-///
-/// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -275,8 +263,6 @@ pub fn delta_H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 }
 
 /// H of the alpha row in the exact form less that of the printed one, eq. (32). Unit: 1/s.
-///
-/// 114 operations: 46 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -324,8 +310,6 @@ pub fn delta_H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R 
 }
 
 /// H of the pitch_rate row in the exact form less that of the printed one, eq. (34). Unit: 1/s^2.
-///
-/// 58 operations: 20 additions, 37 multiplications, 1 exp.
 #[inline(always)]
 pub fn delta_H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);

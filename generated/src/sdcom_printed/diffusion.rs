@@ -53,8 +53,6 @@ pub fn diffusion_values_from<R: Real>(
 /// (28)-(34), w_gamma drives the altitude alone, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 29 operations: 5 additions, 22 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn diffusion_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> DiffusionEntries<R> {
     let i = intermediates(x, u, p);
@@ -72,8 +70,6 @@ pub fn diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> Diffus
 }
 
 /// Time derivative of the state, and the diffusion, for less than one after the other, eq. (27).
-///
-/// 193 operations: 70 additions, 118 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_diffusion<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State<R>, Diffusion<R>) {
     let i = intermediates(x, u, p);
@@ -109,8 +105,6 @@ pub fn noise_increment_from<R: Real>(
 }
 
 /// Itô increment G(x, u) dW of the state for the Wiener increments dW, eq. (27).
-///
-/// 44 operations: 8 additions, 34 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>) -> State<R> {
     let i = intermediates(x, u, p);
@@ -122,8 +116,6 @@ pub fn noise_increment<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw:
 
 /// Time derivative of the state, and the Itô increment G(x, u) dW, for less than one after the other, eq.
 /// (27).
-///
-/// 208 operations: 73 additions, 130 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_noise_increment<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>, dw: &Noise<R>,

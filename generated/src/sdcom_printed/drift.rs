@@ -26,8 +26,6 @@ pub fn drift_from<R: Real>(x: &State<R>, _u: &Input<R>, p: &Prepared<R>, i: &Int
 }
 
 /// Time derivative of the state, eq. (27).
-///
-/// 180 operations: 68 additions, 107 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

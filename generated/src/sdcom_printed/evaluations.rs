@@ -6,48 +6,36 @@ use super::{Input, Prepared, State, curvatures, intermediates, sensitivities, sl
 use ahv_core::Real;
 
 /// Air density, eq. (2). Unit: slug/ft^3.
-///
-/// 4 operations: 1 addition, 2 multiplications, 1 exp.
 #[inline(always)]
 pub fn density<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).density
 }
 
 /// Dynamic pressure, eq. (2). Unit: lb/ft^2.
-///
-/// 7 operations: 1 addition, 5 multiplications, 1 exp.
 #[inline(always)]
 pub fn dynamic_pressure<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).dynamic_pressure
 }
 
 /// Generalized-force coefficient of mode 1, eq. (3). Unit: (ft/slug)^0.5.
-///
-/// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_n_1
 }
 
 /// Generalized force of mode 1, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_1
 }
 
 /// Static flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
-///
-/// 22 operations: 6 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_static_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_1_inv_omega_1_2
 }
 
 /// Reduced flexible coordinate of mode 1, eq. (25). Unit: (ft*slug)^0.5.
-///
-/// 23 operations: 7 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -58,32 +46,24 @@ pub fn eta_1<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Generalized-force coefficient of mode 2, eq. (3). Unit: (ft/slug)^0.5.
-///
-/// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_n_2
 }
 
 /// Generalized force of mode 2, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_2
 }
 
 /// Static flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
-///
-/// 22 operations: 6 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_static_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_2_inv_omega_2_2
 }
 
 /// Reduced flexible coordinate of mode 2, eq. (25). Unit: (ft*slug)^0.5.
-///
-/// 23 operations: 7 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -94,32 +74,24 @@ pub fn eta_2<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Generalized-force coefficient of mode 3, eq. (3). Unit: (ft/slug)^0.5.
-///
-/// 12 operations: 5 additions, 7 multiplications.
 #[inline(always)]
 pub fn c_n_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).c_n_3
 }
 
 /// Generalized force of mode 3, eq. (2). Unit: (ft*slug)^0.5/s^2.
-///
-/// 21 operations: 6 additions, 14 multiplications, 1 exp.
 #[inline(always)]
 pub fn generalized_force_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_3
 }
 
 /// Static flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
-///
-/// 22 operations: 6 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_static_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).generalized_force_3_inv_omega_3_2
 }
 
 /// Reduced flexible coordinate of mode 3, eq. (25). Unit: (ft*slug)^0.5.
-///
-/// 23 operations: 7 additions, 15 multiplications, 1 exp.
 #[inline(always)]
 pub fn eta_3<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);

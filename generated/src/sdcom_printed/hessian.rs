@@ -712,8 +712,6 @@ fn hessian_by_chi_3<R: Real>(
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 959 operations: 297 additions, 657 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);

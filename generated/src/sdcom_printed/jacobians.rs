@@ -334,8 +334,6 @@ pub fn jacobians_values_from<R: Real>(
 /// Derivatives of the drift with respect to the state and to the input, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 495 operations: 157 additions, 333 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -356,8 +354,6 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 /// for less than one after the other, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 538 operations: 174 additions, 359 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

@@ -19,8 +19,6 @@ ahv_core::entries! {
 /// L^j b^k: the derivative of column k of the diffusion along column j, by row, j and k, eq. (27).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 76 operations: 8 additions, 66 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn noise_derivatives_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> NoiseDerivativesEntries<R> {
     let i = intermediates(x, u, p);
@@ -69,8 +67,6 @@ pub fn noise_derivatives<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -
 
 /// What the drift in the Itô sense has over that in the Stratonovich sense: half the sum of L^k b^k, eq.
 /// (27).
-///
-/// 51 operations: 8 additions, 41 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn ito_correction<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

@@ -283,8 +283,6 @@ fn prepare_part_3<R: Real>(c: &mut Prepared<R>, p: &Parameters<R>) {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 221 operations: 32 additions, 177 multiplications, 11 divisions, 1 sqrt.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
     prepare_part_1(&mut c, p);

@@ -7,24 +7,18 @@ use super::{Input, Prepared, State, curvatures, intermediates, noise_slopes, slo
 use ahv_core::Real;
 
 /// Part of the velocity rate that is left to f, eq. (28). Unit: ft/s^2.
-///
-/// 75 operations: 26 additions, 45 multiplications, 1 division, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_velocity
 }
 
 /// Coefficient of phi (1) in the velocity rate, eq. (28). Unit: ft/s^2.
-///
-/// 14 operations: 2 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).g_velocity
 }
 
 /// Derivatives of the velocity rate with respect to the coloured noises chi, eq. (29).
-///
-/// 21 operations: 4 additions, 15 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn h_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -38,8 +32,6 @@ pub fn h_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 
 /// Derivative of the velocity rate with respect to the angle of attack, at frozen inputs, eq. (28). Unit:
 /// ft/s^2/rad.
-///
-/// 15 operations: 3 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -50,32 +42,24 @@ pub fn H_V<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_V from the static flexible coordinates, eq. (29). Unit: ft/s^2.
-///
-/// 56 operations: 19 additions, 35 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_V_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_velocity_eta
 }
 
 /// Part of the gamma rate that is left to f, eq. (30). Unit: rad/s.
-///
-/// 76 operations: 25 additions, 46 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_gamma
 }
 
 /// Coefficient of alpha (rad) in the gamma rate, eq. (30). Unit: 1/s.
-///
-/// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn g_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).g_gamma
 }
 
 /// Derivatives of the gamma rate with respect to the coloured noises chi, eq. (31).
-///
-/// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn h_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -88,40 +72,30 @@ pub fn h_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 }
 
 /// Derivative of the gamma rate with respect to the angle of attack, at frozen inputs, eq. (30). Unit: 1/s.
-///
-/// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_gamma<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).g_gamma
 }
 
 /// Part of f_gamma from the static flexible coordinates, eq. (31). Unit: rad/s.
-///
-/// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_gamma_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_gamma_eta
 }
 
 /// Part of the alpha rate that is left to f, eq. (32). Unit: rad/s.
-///
-/// 83 operations: 28 additions, 50 multiplications, 2 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_alpha
 }
 
 /// Coefficient of pitch_rate (rad/s) in the alpha rate, eq. (32). Unit: 1.
-///
-/// No operations.
 #[inline(always)]
 pub fn g_alpha<R: Real>(_x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> R {
     R::ONE
 }
 
 /// Derivatives of the alpha rate with respect to the coloured noises chi, eq. (33).
-///
-/// 16 operations: 4 additions, 10 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn h_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -134,8 +108,6 @@ pub fn h_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 }
 
 /// Derivative of the alpha rate with respect to the angle of attack, at frozen inputs, eq. (32). Unit: 1/s.
-///
-/// 12 operations: 3 additions, 7 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -146,32 +118,24 @@ pub fn H_alpha<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_alpha from the static flexible coordinates, eq. (33). Unit: rad/s.
-///
-/// 57 operations: 19 additions, 36 multiplications, 1 sin_cos, 1 exp.
 #[inline(always)]
 pub fn f_alpha_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_alpha_eta
 }
 
 /// Part of the pitch_rate rate that is left to f, eq. (34). Unit: rad/s^2.
-///
-/// 66 operations: 23 additions, 42 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_pitch_rate
 }
 
 /// Coefficient of delta_e (rad) in the pitch_rate rate, eq. (34). Unit: 1/s^2.
-///
-/// 9 operations: 1 addition, 7 multiplications, 1 exp.
 #[inline(always)]
 pub fn g_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).g_pitch_rate
 }
 
 /// Derivatives of the pitch_rate rate with respect to the coloured noises chi, eq. (35).
-///
-/// 11 operations: 1 addition, 9 multiplications, 1 exp.
 #[inline(always)]
 pub fn h_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
     let i = intermediates(x, u, p);
@@ -185,8 +149,6 @@ pub fn h_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> [R; 3] {
 
 /// Derivative of the pitch_rate rate with respect to the angle of attack, at frozen inputs, eq. (34). Unit:
 /// 1/s^2.
-///
-/// 14 operations: 3 additions, 10 multiplications, 1 exp.
 #[inline(always)]
 pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     let i = intermediates(x, u, p);
@@ -198,8 +160,6 @@ pub fn H_Q<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
 }
 
 /// Part of f_Q from the static flexible coordinates, eq. (35). Unit: rad/s^2.
-///
-/// 49 operations: 16 additions, 32 multiplications, 1 exp.
 #[inline(always)]
 pub fn f_Q_eta<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> R {
     intermediates(x, u, p).f_pitch_rate_eta

@@ -280,7 +280,12 @@ fn flights<M: GeneratedModel>(
     experiment: impl Fn(u64) -> Experiment,
 ) {
     let seeds = seeds();
-    let sizes = &MEMBERS[..if seeds > SEEDS { 2 } else { 1 }];
+    let sizes = match (experiment(0).control_variate, seeds > SEEDS) {
+        // Fewer have none.
+        (true, _) => &MEMBERS[1..],
+        (false, true) => &MEMBERS[..],
+        (false, false) => &MEMBERS[..1],
+    };
     for &members in sizes {
         let run = |seed, members| {
             let experiment = experiment(seed);

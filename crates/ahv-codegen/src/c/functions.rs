@@ -3,7 +3,6 @@
 use super::print::{Printer, broken, comments};
 use super::types::Types;
 use crate::graph::Kind;
-use crate::ir::capitalised;
 use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program, taken};
 use crate::schedule::tree::{Body, Source, StageKind};
@@ -420,7 +419,6 @@ fn documentation(function: &Function<'_>) -> Vec<String> {
         let (name, count) = (result_name(function, position), shape.axes[0].names.len());
         format!("`{name}` holds {count} numbers, one for each mode.")
     }));
-    docs.push(format!("{}.", capitalised(&function.cost.describe())));
     docs
 }
 

@@ -7,7 +7,6 @@ use super::places::placed;
 use super::print::{statement, value_of};
 use super::wording::{arguments, tuple, values_name};
 use crate::graph::Kind;
-use crate::ir::capitalised;
 use crate::schedule::pieces::Group;
 use crate::schedule::program::{Function, Program, taken};
 use crate::schedule::tree::{Body, Expr, Source, StageKind, Statement};
@@ -371,8 +370,6 @@ fn documentation(function: &Function<'_>) -> Vec<String> {
         let entries = "The structurally non-zero entries alone, in the order of the pattern.";
         docs.extend([String::new(), entries.to_owned()]);
     }
-    let cost = capitalised(&function.cost.describe());
-    docs.extend([String::new(), format!("{cost}.")]);
     docs
 }
 

@@ -7,7 +7,7 @@ use super::print::statement;
 use super::records::{self, Copied, Field};
 use super::wording::arguments;
 use crate::graph::Kind;
-use crate::schedule::Cost;
+
 use crate::schedule::given::Stage;
 use crate::schedule::pieces::sliced;
 use crate::schedule::program::{Program, taken};
@@ -53,12 +53,8 @@ struct PartText {
 /// The file of what is prepared from the parameters.
 pub(super) fn prepared(program: &Program<'_>) -> Result<String, EmitError> {
     let stage = &program.prepared;
-    let mut cost = Cost::default();
-    stage.parts.iter().for_each(|part| cost += part.cost());
-    let docs = ["Computes everything that depends on parameters alone.", ""];
-    let docs = docs.map(str::to_owned).into_iter();
     let text = StageText {
-        docs: docs.chain([format!("{}.", cost.describe())]).collect(),
+        docs: vec!["Computes everything that depends on parameters alone.".to_owned()],
         ..stage_text(stage, &[], "Parameters", program.document)
     };
     render(&StagesTemplate {

@@ -46,8 +46,6 @@ pub fn drift_from<R: Real>(
 }
 
 /// Time derivative of the state, eq. (6).
-///
-/// 330 operations: 112 additions, 212 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

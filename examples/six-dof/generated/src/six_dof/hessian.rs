@@ -1313,8 +1313,6 @@ fn hessian_by_pitch_rate<R: Real>(
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (6).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 2798 operations: 771 additions, 2021 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);

@@ -493,8 +493,6 @@ pub fn jacobians_values_from<R: Real>(
 /// Derivatives of the drift with respect to the state and to the input, eq. (6).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 1125 operations: 318 additions, 801 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,
@@ -516,8 +514,6 @@ pub fn jacobians<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> (State
 /// for less than one after the other, eq. (6).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 1234 operations: 352 additions, 876 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn drift_and_jacobians_values<R: Real>(
     x: &State<R>, u: &Input<R>, p: &Prepared<R>,

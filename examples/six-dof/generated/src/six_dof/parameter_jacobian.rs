@@ -536,8 +536,6 @@ fn parameter_jacobian_by_kinematics<R: Real>(
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (6).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 1041 operations: 187 additions, 848 multiplications, 3 divisions, 2 sin_cos, 1 exp.
 #[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);

@@ -52,8 +52,6 @@ ahv_core::record! {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 116 operations: 9 additions, 101 multiplications, 6 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
 

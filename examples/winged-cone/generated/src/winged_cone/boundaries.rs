@@ -6,8 +6,6 @@ use super::{Boundaries, Input, Prepared, State};
 use ahv_core::Real;
 
 /// Functions that are 0 where the drift has a kink or jumps, for events of adaptive steppers.
-///
-/// 1 operation: 1 addition.
 #[inline(always)]
 pub fn boundaries<R: Real>(x: &State<R>, _u: &Input<R>, _p: &Prepared<R>) -> Boundaries<R> {
     Boundaries {

@@ -26,8 +26,6 @@ pub fn drift_from<R: Real>(
 }
 
 /// Time derivative of the state, eq. (4).
-///
-/// 65 operations: 19 additions, 40 multiplications, 2 divisions, 2 sin_cos, 1 exp, 1 select.
 #[inline(always)]
 pub fn drift<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> State<R> {
     let i = intermediates(x, u, p);

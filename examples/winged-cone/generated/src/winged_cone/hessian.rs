@@ -203,8 +203,6 @@ fn hessian_by_pitch_rate<R: Real>(
 /// Second derivatives of the drift with respect to the state, symmetric in the last two indices, eq. (4).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 258 operations: 51 additions, 199 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn hessian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> HessianEntries<R> {
     let i = intermediates(x, u, p);

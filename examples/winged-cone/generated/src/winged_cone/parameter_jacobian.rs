@@ -150,8 +150,6 @@ fn parameter_jacobian_by_engine<R: Real>(
 /// Derivatives of the drift with respect to every parameter and coefficient of the table, eq. (4).
 ///
 /// The structurally non-zero entries alone, in the order of the pattern.
-///
-/// 169 operations: 23 additions, 138 multiplications, 2 divisions, 2 sin_cos, 1 exp, 3 select.
 #[inline(always)]
 pub fn parameter_jacobian_values<R: Real>(x: &State<R>, u: &Input<R>, p: &Prepared<R>) -> ParameterJacobianEntries<R> {
     let i = intermediates(x, u, p);

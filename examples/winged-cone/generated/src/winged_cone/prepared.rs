@@ -27,8 +27,6 @@ ahv_core::record! {
 }
 
 /// Computes everything that depends on parameters alone.
-///
-/// 23 operations: 1 addition, 19 multiplications, 3 divisions.
 pub fn prepare<R: Real>(p: &Parameters<R>) -> Prepared<R> {
     let mut c = Prepared::copied(p);
     c.inv_h_s = p.h_s.recip();
