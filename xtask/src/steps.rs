@@ -159,7 +159,7 @@ const DENY: [&str; 3] = ["--", "-D", "warnings"];
 
 /// Runs the steps in turn, up to the first that fails; with `all`, those too that take too long for every change.
 pub(crate) fn run(all: bool) -> Result<(), String> {
-    let (mut passed, mut skipped, mut times) = (0, Vec::new(), Vec::new());
+    let (mut passed, mut skipped, mut failed, mut times) = (0, Vec::new(), Vec::new(), Vec::new());
     let more: &[Step] = if all { &MORE } else { &[] };
     let steps = STEPS.iter().chain(more);
     let count = STEPS.len() + more.len();
@@ -179,9 +179,10 @@ pub(crate) fn run(all: bool) -> Result<(), String> {
                 skipped.push(format!("SKIPPED {name}: {reason}"));
             }
             Err(problem) => {
-                return Err(format!(
-                    "{problem}\n== {name}: FAILED after {seconds:.1} s\n{passed} passed, 1 failed"
-                ));
+                // The others are told too: who waits this long learns all of it.
+                eprintln!("{problem}");
+                println!("== {name}: FAILED after {seconds:.1} s");
+                failed.push(*name);
             }
         }
     }
@@ -189,8 +190,15 @@ pub(crate) fn run(all: bool) -> Result<(), String> {
     for line in &skipped {
         println!("{line}");
     }
-    println!("{passed} passed, 0 failed");
-    Ok(())
+    if failed.is_empty() {
+        println!("{passed} passed, 0 failed");
+        return Ok(());
+    }
+    Err(format!(
+        "error: failed: {}\n{passed} passed, {} failed",
+        failed.join(", "),
+        failed.len()
+    ))
 }
 
 /// The slowest steps, the slowest first, and what all took.
