@@ -71,25 +71,17 @@ pub(crate) fn measure(
         let start = Instant::now();
         let told = own(program, &gains, step, (seed, members), more)?;
         let seconds = start.elapsed().as_secs_f64() * share as f64;
-        Ok((seconds, told))
-    };
-    let plain = |seed| {
-        let (seconds, told) = own(seed, MEMBERS / SHARE, SHARE, &[])?;
-        Ok(Outcome {
+        if members == FEW {
+            narrow(&told)?;
+        }
+        Ok::<_, String>(Outcome {
             seconds,
             values: moments_of(&told)?,
             first: 0.0,
         })
     };
-    let controlled = |seed| {
-        let (seconds, told) = own(seed, FEW, 1, &["--control-variate"])?;
-        narrow(&told)?;
-        Ok(Outcome {
-            seconds,
-            values: moments_of(&told)?,
-            first: 0.0,
-        })
-    };
+    let plain = |seed| own(seed, MEMBERS / SHARE, SHARE, &[]);
+    let controlled = |seed| own(seed, FEW, 1, &["--control-variate"]);
     let ends = |ends: &Vec<_>| moments::of_members::<1>(ends);
     let runners = vec![
         Runner::new(PEER, GXX, 1.0 / SHARE as f64, fly, ends),
