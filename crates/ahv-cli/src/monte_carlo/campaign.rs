@@ -325,6 +325,7 @@ impl<'r> Campaign<'r> {
 /// A member without its states at the snapshots, which are summed in its part.
 fn without_snapshots(seen: &MemberRecord) -> MemberRecord {
     MemberRecord {
+        companion: Vec::new(),
         states: Vec::new(),
         inputs: Vec::new(),
         last: seen.last.clone(),

@@ -335,6 +335,7 @@ fn records(reader: &SerializedFileReader<File>, ready: &Ready) -> Parquet<Vec<Me
             });
             let step = steps.get(row).copied().flatten();
             MemberRecord {
+                companion: Vec::new(),
                 states: Vec::new(),
                 inputs: Vec::new(),
                 last: Vec::with_capacity(states.len()),
