@@ -9,6 +9,7 @@ import ahv
 
 
 def main() -> None:
+    """Fly a campaign twice; the second time its shards are read."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp()) / "campaign"
     flights = {"members": 20_000, "t_end": 0.5, "dt": 0.01, "limit": {"alpha": (-0.02, 0.06)}, "shard_members": 4096}
     for what in ("flown", "read"):

@@ -34,6 +34,7 @@ def elapsed(client: distributed.Client, tasks: int, duration_s: float) -> float:
 
 
 def main() -> None:
+    """Time empty tasks, and tasks of known length."""
     tasks = int(sys.argv[2]) if len(sys.argv) > 2 else TASKS
     cluster = distributed.LocalCluster(n_workers=WORKERS, threads_per_worker=1, dashboard_address=":0")
     with cluster, distributed.Client(cluster) as client:

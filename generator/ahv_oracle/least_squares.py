@@ -60,12 +60,12 @@ def least_squares_lines() -> Iterator[str]:
 
 
 def _solve(design: Array, wanted: Array) -> Array:
-    found: Array = np.linalg.lstsq(design, wanted, rcond=None)[0]
-    return found
+    found: NDArray[np.floating[Any]] = np.linalg.lstsq(design, wanted, rcond=None)[0]
+    return found.astype(np.float64)
 
 
 def _case(design: Array, wanted: Array, weights: Array, folds: Array) -> dict[str, Any]:
-    root = np.sqrt(weights)
+    root: Array = np.sqrt(weights)
     scaled, aim = design * root[:, None], wanted * root
     found = _solve(scaled, aim)
     left = aim - scaled @ found
