@@ -264,15 +264,24 @@ fn steady(vehicle: &Vehicle) -> Result<Steady, String> {
     })
 }
 
-/// Relative change below which a slope is the same but for rounding.
+/// Change below which a slope is the same but for rounding, as a share of what the state with the largest effect on the output does over
+/// its box.
 const SAME: f64 = 1e-9;
 
 fn slopes(vehicle: &Vehicle, [old, new]: &[Steady; 2]) -> Vec<Slope> {
     let mut found = Vec::new();
+    let width = |column: usize| {
+        let bounds = vehicle.state_bounds.get(column);
+        let width = bounds.map_or(1.0, |it| it.max - it.min);
+        if width.is_finite() { width } else { 1.0 }
+    };
     for (row, &output) in new.system.outputs.iter().enumerate() {
+        let effects = (0..new.system.states.len())
+            .map(|column| new.system.c[(row, column)].abs() * width(column));
+        let largest = effects.fold(0.0, f64::max);
         for (column, &state) in new.system.states.iter().enumerate() {
             let [before, after] = [old, new].map(|it| it.system.c[(row, column)]);
-            if (after - before).abs() <= SAME * before.abs().max(after.abs()) {
+            if (after - before).abs() * width(column) <= SAME * largest {
                 continue;
             }
             found.push(Slope {

@@ -171,7 +171,9 @@ fn over_box(blocks: &mut Vec<Block>, effect: &Effect) {
     );
     blocks.push(Block::Heading(heading));
     if outputs.is_empty() {
-        blocks.push(Block::Line("no output changes".to_owned()));
+        blocks.push(Block::Line(
+            "none changes at the same states and inputs".to_owned(),
+        ));
         return;
     }
     let rows = outputs.iter().map(|it| {
