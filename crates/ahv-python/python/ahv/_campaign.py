@@ -177,9 +177,9 @@ def _fly(
                 print(f"\rahv: {there} of {plan['shards']} shards", end="", file=sys.stderr, flush=True)
             flying.update(submit(number) for number in islice(missing, 1))
     except (OSError, TimeoutError, CancelledError, distributed.KilledWorker) as error:
-        why = str(error) or type(error).__name__
+        why = " ".join(str(error).split()) or type(error).__name__
         raise AhvError(
-            f"the scheduler or its workers are gone ({why}); {there} of {plan['shards']} shards are in "
+            f"the scheduler or its workers are gone ({why}); at least {there} of {plan['shards']} shards are in "
             f"{plan['folder']}. Start a scheduler and call ahv.campaign again with the same arguments: "
             "it goes on with them"
         ) from None
